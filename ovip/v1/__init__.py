@@ -1,0 +1,1 @@
+"""Protobuf and gRPC stubs generated from proto/ovip/v1 by `make proto`; not edited by hand."""

@@ -1,0 +1,128 @@
+from ovip.v1 import types_pb2 as _types_pb2
+from google.protobuf.internal import containers as _containers
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from collections.abc import Iterable as _Iterable, Mapping as _Mapping
+from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class Region(_message.Message):
+    __slots__ = ("region_id", "floor", "function", "display_name", "area", "centroid", "outlines", "holes", "object_ids", "frame_ids")
+    REGION_ID_FIELD_NUMBER: _ClassVar[int]
+    FLOOR_FIELD_NUMBER: _ClassVar[int]
+    FUNCTION_FIELD_NUMBER: _ClassVar[int]
+    DISPLAY_NAME_FIELD_NUMBER: _ClassVar[int]
+    AREA_FIELD_NUMBER: _ClassVar[int]
+    CENTROID_FIELD_NUMBER: _ClassVar[int]
+    OUTLINES_FIELD_NUMBER: _ClassVar[int]
+    HOLES_FIELD_NUMBER: _ClassVar[int]
+    OBJECT_IDS_FIELD_NUMBER: _ClassVar[int]
+    FRAME_IDS_FIELD_NUMBER: _ClassVar[int]
+    region_id: str
+    floor: int
+    function: str
+    display_name: str
+    area: float
+    centroid: _types_pb2.Vector3
+    outlines: _containers.RepeatedCompositeFieldContainer[_types_pb2.Polygon]
+    holes: _containers.RepeatedCompositeFieldContainer[_types_pb2.Polygon]
+    object_ids: _containers.RepeatedScalarFieldContainer[str]
+    frame_ids: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, region_id: _Optional[str] = ..., floor: _Optional[int] = ..., function: _Optional[str] = ..., display_name: _Optional[str] = ..., area: _Optional[float] = ..., centroid: _Optional[_Union[_types_pb2.Vector3, _Mapping]] = ..., outlines: _Optional[_Iterable[_Union[_types_pb2.Polygon, _Mapping]]] = ..., holes: _Optional[_Iterable[_Union[_types_pb2.Polygon, _Mapping]]] = ..., object_ids: _Optional[_Iterable[str]] = ..., frame_ids: _Optional[_Iterable[str]] = ...) -> None: ...
+
+class RegionEdge(_message.Message):
+    __slots__ = ("a", "b", "width", "position")
+    A_FIELD_NUMBER: _ClassVar[int]
+    B_FIELD_NUMBER: _ClassVar[int]
+    WIDTH_FIELD_NUMBER: _ClassVar[int]
+    POSITION_FIELD_NUMBER: _ClassVar[int]
+    a: str
+    b: str
+    width: float
+    position: _types_pb2.Vector3
+    def __init__(self, a: _Optional[str] = ..., b: _Optional[str] = ..., width: _Optional[float] = ..., position: _Optional[_Union[_types_pb2.Vector3, _Mapping]] = ...) -> None: ...
+
+class FloorSummary(_message.Message):
+    __slots__ = ("floor", "z", "ceiling_z", "area")
+    FLOOR_FIELD_NUMBER: _ClassVar[int]
+    Z_FIELD_NUMBER: _ClassVar[int]
+    CEILING_Z_FIELD_NUMBER: _ClassVar[int]
+    AREA_FIELD_NUMBER: _ClassVar[int]
+    floor: int
+    z: float
+    ceiling_z: float
+    area: float
+    def __init__(self, floor: _Optional[int] = ..., z: _Optional[float] = ..., ceiling_z: _Optional[float] = ..., area: _Optional[float] = ...) -> None: ...
+
+class Partition(_message.Message):
+    __slots__ = ("map_version", "revision", "floors", "regions", "edges", "fallbacks")
+    MAP_VERSION_FIELD_NUMBER: _ClassVar[int]
+    REVISION_FIELD_NUMBER: _ClassVar[int]
+    FLOORS_FIELD_NUMBER: _ClassVar[int]
+    REGIONS_FIELD_NUMBER: _ClassVar[int]
+    EDGES_FIELD_NUMBER: _ClassVar[int]
+    FALLBACKS_FIELD_NUMBER: _ClassVar[int]
+    map_version: int
+    revision: int
+    floors: _containers.RepeatedCompositeFieldContainer[FloorSummary]
+    regions: _containers.RepeatedCompositeFieldContainer[Region]
+    edges: _containers.RepeatedCompositeFieldContainer[RegionEdge]
+    fallbacks: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, map_version: _Optional[int] = ..., revision: _Optional[int] = ..., floors: _Optional[_Iterable[_Union[FloorSummary, _Mapping]]] = ..., regions: _Optional[_Iterable[_Union[Region, _Mapping]]] = ..., edges: _Optional[_Iterable[_Union[RegionEdge, _Mapping]]] = ..., fallbacks: _Optional[_Iterable[str]] = ...) -> None: ...
+
+class GetRegionsRequest(_message.Message):
+    __slots__ = ("scene",)
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    scene: str
+    def __init__(self, scene: _Optional[str] = ...) -> None: ...
+
+class GetRegionsResponse(_message.Message):
+    __slots__ = ("partition",)
+    PARTITION_FIELD_NUMBER: _ClassVar[int]
+    partition: Partition
+    def __init__(self, partition: _Optional[_Union[Partition, _Mapping]] = ...) -> None: ...
+
+class RecomputeRequest(_message.Message):
+    __slots__ = ("scene",)
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    scene: str
+    def __init__(self, scene: _Optional[str] = ...) -> None: ...
+
+class RecomputeResponse(_message.Message):
+    __slots__ = ("partition",)
+    PARTITION_FIELD_NUMBER: _ClassVar[int]
+    partition: Partition
+    def __init__(self, partition: _Optional[_Union[Partition, _Mapping]] = ...) -> None: ...
+
+class GetFloorGridRequest(_message.Message):
+    __slots__ = ("scene", "floor")
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    FLOOR_FIELD_NUMBER: _ClassVar[int]
+    scene: str
+    floor: int
+    def __init__(self, scene: _Optional[str] = ..., floor: _Optional[int] = ...) -> None: ...
+
+class GetFloorGridResponse(_message.Message):
+    __slots__ = ("floor", "origin_x", "origin_y", "resolution", "rows", "columns", "occupancy", "regions", "region_ids", "revision")
+    FLOOR_FIELD_NUMBER: _ClassVar[int]
+    ORIGIN_X_FIELD_NUMBER: _ClassVar[int]
+    ORIGIN_Y_FIELD_NUMBER: _ClassVar[int]
+    RESOLUTION_FIELD_NUMBER: _ClassVar[int]
+    ROWS_FIELD_NUMBER: _ClassVar[int]
+    COLUMNS_FIELD_NUMBER: _ClassVar[int]
+    OCCUPANCY_FIELD_NUMBER: _ClassVar[int]
+    REGIONS_FIELD_NUMBER: _ClassVar[int]
+    REGION_IDS_FIELD_NUMBER: _ClassVar[int]
+    REVISION_FIELD_NUMBER: _ClassVar[int]
+    floor: int
+    origin_x: float
+    origin_y: float
+    resolution: float
+    rows: int
+    columns: int
+    occupancy: bytes
+    regions: bytes
+    region_ids: _containers.RepeatedScalarFieldContainer[str]
+    revision: int
+    def __init__(self, floor: _Optional[int] = ..., origin_x: _Optional[float] = ..., origin_y: _Optional[float] = ..., resolution: _Optional[float] = ..., rows: _Optional[int] = ..., columns: _Optional[int] = ..., occupancy: _Optional[bytes] = ..., regions: _Optional[bytes] = ..., region_ids: _Optional[_Iterable[str]] = ..., revision: _Optional[int] = ...) -> None: ...
