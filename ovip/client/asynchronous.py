@@ -1,0 +1,110 @@
+"""The asynchronous client: stream frames, read the map and the regions, ask where things are."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from types import TracebackType
+from typing import Literal
+
+from ovip.client.addresses import Addresses
+from ovip.client.streaming import FrameStream, Hello, OutgoingFrame, StreamEvent, StreamReport
+from ovip.clients import MapperClient, PerceptionClient, RegionsClient, RetrievalClient, connect
+from ovip.errors import Corrupt, DeadlineExceeded
+from ovip.scene.answers import Answer, Observation, PerceptionStatus, Query, SearchEvent, Viewpoint
+from ovip.scene.types import Partition, SceneMap
+
+
+class AsyncClient:
+    """One stack. Use as `async with AsyncClient(Addresses(...)) as client:`.
+
+    `perception`, `mapper`, `regions` and `retrieval` are the full clients; the methods here are the daily ones.
+    """
+
+    def __init__(self, addresses: Addresses) -> None:
+        self._channels = {
+            name: connect(getattr(addresses, name), addresses.api_key)
+            for name in ("perception", "mapper", "regions", "retrieval")
+        }
+        self.perception = PerceptionClient(self._channels["perception"])
+        self.mapper = MapperClient(self._channels["mapper"])
+        self.regions = RegionsClient(self._channels["regions"])
+        self.retrieval = RetrievalClient(self._channels["retrieval"])
+
+    async def __aenter__(self) -> AsyncClient:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Closes the connections."""
+        await asyncio.gather(*(channel.close() for channel in self._channels.values()))
+
+    async def stream(
+        self,
+        hello: Hello,
+        frames: AsyncIterator[OutgoingFrame] | Iterable[OutgoingFrame],
+        keep: Literal["all", "newest"] = "all",
+        on_event: Callable[[StreamEvent], None] | None = None,
+    ) -> StreamReport:
+        """Sends frames; returns when each is durable or rejected. See `FrameStream`."""
+        return await FrameStream(self._channels["perception"], hello, keep, on_event).send(frames)
+
+    async def wait_until_applied(
+        self,
+        scene: str,
+        timeout_s: float = 3600.0,
+        on_progress: Callable[[PerceptionStatus], None] | None = None,
+    ) -> SceneMap:
+        """Waits until every durable frame of a scene is in its map, and returns the map.
+
+        DeadlineExceeded where `timeout_s` passes first.
+        """
+        deadline = time.monotonic() + timeout_s
+        while time.monotonic() < deadline:
+            status = await self.perception.status(scene)
+            if on_progress:
+                on_progress(status)
+            if status.frames_processed + status.frames_skipped >= status.frames_durable:
+                current = await self.mapper.get_map(scene)
+                if current.frames >= status.frames_processed and current.detections >= status.detections:
+                    return current
+            await asyncio.sleep(0.2)
+        raise DeadlineExceeded(f"scene {scene}: not every frame was in the map after {timeout_s:.0f} s")
+
+    async def find(self, query: Query, on_event: Callable[[SearchEvent], None] | None = None) -> Answer:
+        """The answer of tiers 1 to 3, with the plan of tier 4."""
+        async for _, event in self.retrieval.find(query):
+            if on_event:
+                on_event(event)
+            if isinstance(event, Answer):
+                return event
+        raise Corrupt("retrieval ended without an answer")
+
+    async def search(
+        self, query: Query | str, look: Callable[[Viewpoint], Awaitable[Observation | None]]
+    ) -> tuple[str, Answer]:
+        """An active search: `look` drives to each viewpoint and answers with a frame. Returns search id and answer.
+
+        query: a query, or the id of a stored search to go on with. `look` returning None cancels the search.
+        """
+
+        async def observe(event: SearchEvent) -> Observation | None:
+            return await look(event) if isinstance(event, Viewpoint) else None
+
+        async for search_id, event in self.retrieval.search(query, observe):
+            if isinstance(event, Answer):
+                return search_id, event
+        raise Corrupt("retrieval ended without an answer")
+
+    async def get_map(self, scene: str) -> SceneMap:
+        """The confirmed objects of a scene."""
+        return await self.mapper.get_map(scene)
+
+    async def get_regions(self, scene: str) -> Partition:
+        """The newest partition of a scene's floors."""
+        return await self.regions.get_partition(scene)

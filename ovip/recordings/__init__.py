@@ -1,0 +1,19 @@
+"""Recordings on disk -> posed frames, one layout a file; `open_recording` is the door."""
+
+from ovip.recordings.folder import write_folder
+from ovip.recordings.frames import OnboardDetection, RecordedFrame, SkippedFrame
+from ovip.recordings.recording import Recording
+from ovip.recordings.registry import LAYOUTS, open_recording
+from ovip.recordings.up import Up, parse_up
+
+__all__ = [
+    "LAYOUTS",
+    "OnboardDetection",
+    "RecordedFrame",
+    "Recording",
+    "SkippedFrame",
+    "Up",
+    "open_recording",
+    "parse_up",
+    "write_folder",
+]

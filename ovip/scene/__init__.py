@@ -1,0 +1,1 @@
+"""The scene in plain numpy: types, boxes, cameras, features, voxels, grids. No I/O."""

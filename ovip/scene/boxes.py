@@ -1,0 +1,45 @@
+"""Axis-aligned 3D boxes as `(N, 6)` arrays: low corner, then high corner, metres."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from ovip.scene.types import F32, F64
+
+
+def box_of(points: F32 | F64) -> F64:
+    """The box `(6,)` around `(N, 3)` points; N >= 1."""
+    return np.asarray(np.concatenate([points.min(axis=0), points.max(axis=0)]), np.float64)
+
+
+def volume(boxes: F64) -> F64:
+    """Volume of `(N, 6)` boxes -> `(N,)` cubic metres; 0 for a box with no extent along some axis."""
+    return np.asarray(np.prod(np.maximum(boxes[:, 3:] - boxes[:, :3], 0.0), axis=1), np.float64)
+
+
+def pairwise_intersection(a: F64, b: F64) -> F64:
+    """Shared volume of `(M, 6)` and `(N, 6)` boxes -> `(M, N)`."""
+    low = np.maximum(a[:, None, :3], b[None, :, :3])
+    high = np.minimum(a[:, None, 3:], b[None, :, 3:])
+    return np.asarray(np.prod(np.maximum(high - low, 0.0), axis=2), np.float64)
+
+
+def pairwise_iou(a: F64, b: F64) -> F64:
+    """Volume IoU of `(M, 6)` and `(N, 6)` boxes -> `(M, N)`; 0 where both are empty."""
+    shared = pairwise_intersection(a, b)
+    union = volume(a)[:, None] + volume(b)[None, :] - shared
+    return np.divide(shared, union, out=np.zeros_like(shared), where=union > 0)
+
+
+def touching(box: F64, boxes: F64) -> npt.NDArray[np.bool_]:
+    """Which of `(N, 6)` boxes share a volume with `box` `(6,)` -> `(N,)`."""
+    return np.asarray(((boxes[:, :3] < box[3:]) & (boxes[:, 3:] > box[:3])).all(axis=1))
+
+
+def transformed_bounds(box: F64, transform: F64) -> F64:
+    """Axis-aligned bounds `(6,)` of a box whose eight corners went through a 4x4 rigid transform."""
+    low, high = box[:3], box[3:]
+    pick = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)])
+    corners = np.where(pick, high, low) @ transform[:3, :3].T + transform[:3, 3]
+    return box_of(corners)

@@ -1,0 +1,191 @@
+"""The words of the system as values: what a frame, a detection, an object and a region are (one word per thing)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+F32 = npt.NDArray[np.float32]
+F64 = npt.NDArray[np.float64]
+U8 = npt.NDArray[np.uint8]
+U16 = npt.NDArray[np.uint16]
+I32 = npt.NDArray[np.int32]
+I64 = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Intrinsics:
+    """Pinhole camera in pixels; pixel centres at integers."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True)
+class Box2:
+    """Axis-aligned box in pixels, half-open: `x0 <= x < x1`."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+    @property
+    def area(self) -> float:
+        return max(0.0, self.x1 - self.x0) * max(0.0, self.y1 - self.y0)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One posed RGB-D image pair, decoded.
+
+    rgb: `(H, W, 3)` uint8. depth: `(H, W)` float32 metres, 0 = no measurement.
+    world_from_camera: `(4, 4)` float64, rigid; world z up.
+    """
+
+    frame_id: str
+    timestamp_ns: int
+    intrinsics: Intrinsics
+    world_from_camera: F64
+    rgb: U8
+    depth: F32
+
+
+@dataclass(frozen=True, slots=True)
+class Detection:
+    """One mask in one frame, lifted to 3D.
+
+    box: `(6,)` float64, low then high corner, world metres. feature: `(D,)` float32, unit length.
+    points: `(N, 3)` float32 world metres. colors: `(N, 3)` uint8 RGB.
+    """
+
+    detection_id: str
+    label: str
+    score: float
+    box2: Box2
+    box: F64
+    feature: F32
+    points: F32
+    colors: U8
+
+
+@dataclass(frozen=True, slots=True)
+class DetectionBatch:
+    """Everything found in one frame for the words grounded in it.
+
+    surface: `(N, 3)` float32, a coarse cloud of all of the frame's depth; empty where `late`.
+    """
+
+    frame_id: str
+    timestamp_ns: int
+    intrinsics: Intrinsics
+    world_from_camera: F64
+    detections: tuple[Detection, ...]
+    surface: F32
+    words: tuple[str, ...] = ()
+    late: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MapObject:
+    """One mapped object, the paper's o_j, as readers see it.
+
+    centroid: `(3,)`; box: `(6,)` low then high, world metres. feature: `(D,)` unit. mean_color: `(3,)` RGB 0..255.
+    """
+
+    object_id: str
+    label: str
+    label_counts: dict[str, int]
+    centroid: F64
+    box: F64
+    feature: F32
+    view_weight: float
+    observations: int
+    frames: int
+    first_seen_ns: int
+    last_seen_ns: int
+    voxels: int
+    mean_color: F64
+    best_frame_id: str
+    best_box2: Box2
+    version: int
+
+
+@dataclass(frozen=True, slots=True)
+class SceneMap:
+    """A scene's objects at one version."""
+
+    scene: str
+    version: int
+    objects: tuple[MapObject, ...]
+    state_hash: str
+    frames: int
+    detections: int
+    applied_log_id: str
+
+
+@dataclass(frozen=True, slots=True)
+class MapDelta:
+    """What one commit changed: object ids, and losers -> survivors."""
+
+    version: int
+    frame_id: str
+    created: tuple[str, ...] = ()
+    updated: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()
+    aliases: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """One functional floor region. outlines, holes: tuples of `(N, 2)` world metres, open rings."""
+
+    region_id: str
+    floor: int
+    function: str
+    display_name: str
+    area: float
+    centroid: F64
+    outlines: tuple[F64, ...]
+    holes: tuple[F64, ...]
+    object_ids: tuple[str, ...]
+    frame_ids: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RegionEdge:
+    """Two regions that touch, and the opening between them. position: `(3,)` metres; width in metres."""
+
+    a: str
+    b: str
+    width: float
+    position: F64
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """One storey: heights in metres (`ceiling_z` None where no ceiling was seen), area in square metres."""
+
+    floor: int
+    z: float
+    ceiling_z: float | None
+    area: float
+
+
+@dataclass(frozen=True, slots=True)
+class Partition:
+    """The floors of a scene cut into regions, and the map version they were cut from."""
+
+    map_version: int
+    revision: int
+    floors: tuple[Floor, ...] = ()
+    regions: tuple[Region, ...] = ()
+    edges: tuple[RegionEdge, ...] = ()
+    fallbacks: tuple[str, ...] = ()
