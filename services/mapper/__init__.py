@@ -1,0 +1,1 @@
+"""Mapper: turns detections into objects that stay themselves (SPEC 2)."""

@@ -1,0 +1,40 @@
+"""Settings of the mapper."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from ovip.config import KernelSettings
+from services.mapper.domain.association import AssociationParams
+from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.upkeep import UpkeepParams
+
+_UPKEEP = UpkeepParams()
+_ASSOCIATION = AssociationParams()
+
+
+class Settings(KernelSettings):
+    """How detections become objects, and how often the map is written down whole."""
+
+    port: int = Field(50052, validation_alias="OVIP_MAPPER_PORT", description="gRPC port; 0: any free one")
+    tau: float = Field(
+        _ASSOCIATION.tau, description="association score that a detection must exceed to join an object"
+    )
+    alpha: float = Field(
+        _ASSOCIATION.alpha, ge=-1, le=1, description="weight of shape against appearance (paper: 0)"
+    )
+    label_penalty: float = Field(
+        _ASSOCIATION.label_penalty, ge=0, description="what a differing label costs (paper's w_L: 0.5)"
+    )
+    upkeep_every: int = Field(_UPKEEP.every, ge=1, description="detection batches between upkeeps")
+    confirm_frames: int = Field(
+        _UPKEEP.confirm_frames, ge=1, description="frames that must see an object to believe it"
+    )
+    snapshot_every: int = Field(50, ge=1, description="commits between snapshots of the whole map")
+
+    def map_params(self) -> MapParams:
+        """The numbers that the domain takes."""
+        return MapParams(
+            association=AssociationParams(self.alpha, self.label_penalty, self.tau),
+            upkeep=UpkeepParams(every=self.upkeep_every, confirm_frames=self.confirm_frames),
+        )

@@ -1,0 +1,1 @@
+"""IPA (IPSM + LAMP), AWF and the object map in plain numpy."""

@@ -1,0 +1,1 @@
+"""The real models behind the seams: embedded (CPU, no torch), gateway (a VLM), full (GPU)."""
