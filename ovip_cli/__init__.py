@@ -1,0 +1,1 @@
+"""The `ovip` command, one file a subcommand."""
