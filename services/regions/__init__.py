@@ -1,0 +1,1 @@
+"""Cuts each floor of a scene into functional regions (KGSW)."""

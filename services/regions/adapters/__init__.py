@@ -1,0 +1,1 @@
+"""What stands behind the seams: the VLM gateway, and the function table that needs none."""

@@ -1,0 +1,1 @@
+"""The paper: from depth and objects to regions, pure."""

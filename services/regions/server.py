@@ -1,0 +1,39 @@
+"""The gRPC face of regions: decodes, calls, encodes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import grpc
+
+from ovip import codec
+from ovip.v1 import regions_pb2 as pb
+from ovip.v1 import regions_pb2_grpc
+from services.regions.service import Regions
+
+SERVICE_NAME = pb.DESCRIPTOR.services_by_name["RegionsService"].full_name
+
+
+class RegionsServicer(regions_pb2_grpc.RegionsServiceServicer):
+    """Translates between messages and `Regions`."""
+
+    def __init__(self, regions: Regions) -> None:
+        self._regions = regions
+
+    async def GetRegions(self, request: pb.GetRegionsRequest, context: Any) -> pb.GetRegionsResponse:
+        return pb.GetRegionsResponse(
+            partition=codec.partition_message(await self._regions.partition(request.scene))
+        )
+
+    async def Recompute(self, request: pb.RecomputeRequest, context: Any) -> pb.RecomputeResponse:
+        return pb.RecomputeResponse(
+            partition=codec.partition_message(await self._regions.recompute(request.scene))
+        )
+
+    async def GetFloorGrid(self, request: pb.GetFloorGridRequest, context: Any) -> pb.GetFloorGridResponse:
+        return codec.floor_grid_message(await self._regions.floor_grid(request.scene, request.floor))
+
+
+def register(regions: Regions, server: grpc.aio.Server) -> None:
+    """Puts regions on a server."""
+    regions_pb2_grpc.add_RegionsServiceServicer_to_server(RegionsServicer(regions), server)  # type: ignore[no-untyped-call]
