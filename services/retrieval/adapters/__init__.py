@@ -1,0 +1,1 @@
+"""Real implementations of the seams in `ports` that are not clients of other services."""
