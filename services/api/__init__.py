@@ -1,0 +1,1 @@
+"""The api service: the map over REST, events and a dashboard. It owns nothing and asks the others."""

@@ -1,0 +1,1 @@
+"""The other services, reached by their clients."""

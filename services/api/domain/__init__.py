@@ -1,0 +1,1 @@
+"""What the api computes itself: cursors, JSON shapes, point clouds and pictures. No I/O."""
