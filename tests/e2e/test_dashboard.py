@@ -1,0 +1,122 @@
+"""The dashboard in a real browser over a real stack that has mapped the simulated home."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ovip_cli.stacks import read_ready, stop_stack
+from tests.e2e.conftest import Cli
+
+playwright = pytest.importorskip(
+    "playwright.sync_api", reason="playwright is not installed: dashboard not tested"
+)
+CHROMIUM = shutil.which("chromium")
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.models,
+    pytest.mark.skipif(CHROMIUM is None, reason="no chromium on PATH: dashboard not tested"),
+]
+SCENE = "home"
+
+
+@pytest.fixture(scope="module")
+def stack(cli: Cli, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
+    """A stack on free ports, with its data directory in `data`."""
+    data = tmp_path_factory.mktemp("dashboard")
+    environment = {
+        **cli.environment,
+        "OVIP_DATA_DIR": str(data),
+        "OVIP_FREE_PORTS": "true",
+        "OVIP_LOG_LEVEL": "warning",
+    }
+    process = subprocess.Popen(
+        [sys.executable, "-m", "services.standalone"], stdout=subprocess.PIPE, text=True, env=environment
+    )
+    try:
+        yield {**read_ready(process), "data": data}
+    finally:
+        stop_stack(process)
+
+
+@pytest.fixture(scope="module")
+def mapped(stack: dict[str, Any], cli: Cli, room_recording: Path) -> dict[str, Any]:
+    """What the replay of the simulated home into the running stack said."""
+    result: dict[str, Any] = cli.json(
+        "replay", room_recording, "--scene", SCENE, "--data-dir", stack["data"], timeout=500
+    )
+    return result
+
+
+@pytest.fixture
+def page(stack: dict[str, Any], mapped: dict[str, Any], tmp_path: Path) -> Iterator[Any]:
+    """The dashboard, opened by the link that the stack prints; an error of its scripts fails the test."""
+    wrong: list[str] = []
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch_persistent_context(
+            tmp_path / "profile",
+            executable_path=CHROMIUM,
+            args=FLAGS,
+            viewport={"width": 1280, "height": 800},
+        )
+        shown = browser.new_page()
+        shown.set_default_timeout(30_000)
+        shown.on("pageerror", lambda error: wrong.append(str(error)))
+        shown.goto(f"{stack['dashboard']}&scene={SCENE}")
+        shown.wait_for_selector(f"{at('live-status')}[data-state='on']")
+        yield shown
+        browser.close()
+    assert wrong == []
+
+
+def at(name: str) -> str:
+    return f'[data-testid="{name}"]'
+
+
+def test_the_home_is_shown_with_its_objects_and_regions(page: Any, mapped: dict[str, Any]) -> None:
+    expect = playwright.expect
+    expect(page.locator(at("object-count"))).to_have_text(str(mapped["objects"]))
+    expect(page.locator(at("plan-object"))).to_have_count(mapped["objects"])
+    expect(page.locator(at("region-count"))).to_have_text(str(mapped["regions"]))
+    assert page.locator(f"{at('plan-object')}[data-label='laptop']").count() == 1
+    assert page.locator(f"{at('plan-svg')} image").count() == 1
+    expect(page.locator(at("space"))).to_have_attribute("data-points", re.compile(r"[1-9]\d+"))
+    expect(page.locator(at("space"))).to_have_attribute("data-drawn", re.compile(r"[1-9]"))
+
+
+def test_a_question_typed_into_it_is_answered_with_its_evidence(page: Any) -> None:
+    page.fill(at("query-input"), "where is the laptop?")
+    page.press(at("query-input"), "Enter")
+    page.wait_for_selector(f"{at('answer-outcome')}[data-outcome='found']")
+    assert "laptop" in page.text_content(at("answer-outcome"))
+    assert page.text_content(at("answer-position"))
+    page.wait_for_selector(f"{at('evidence')}[data-drawn='true']")
+    page.wait_for_selector(at("plan-found"))
+
+
+def test_what_is_not_there_is_said_with_what_it_would_take(page: Any) -> None:
+    page.fill(at("query-input"), "piano")
+    page.click(at("query-submit"))
+    page.wait_for_selector(f"{at('answer-outcome')}[data-outcome='unresolved']")
+    assert "viewpoints" in page.text_content(at("answer-needs"))
+    for tier in (1, 2, 3, 4):
+        assert page.text_content(at(f"tier-{tier}"))

@@ -1,0 +1,133 @@
+"""A scene cut into regions: floors, objects, frames, ids and names, from depth to partition."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from services.regions.domain.assembly import Cut, PlacedObjects, assemble, storeys_of_objects, survey
+from services.regions.domain.evidence import FloorEvidence
+from tests.unit.services.regions.rooms import room, seen, two_rooms
+
+
+def objects(*items: tuple[str, float, float, float]) -> PlacedObjects:
+    return PlacedObjects(
+        tuple(f"o{number}" for number in range(len(items))),
+        tuple(item[0] for item in items),
+        np.array([item[1:] for item in items], dtype=np.float64).reshape(-1, 3),
+    )
+
+
+KITCHEN_AND_BEDROOM = objects(("stove", 0.5, 0.5, 0.9), ("bed", 7.0, 3.0, 0.4))
+
+
+def test_two_rooms_become_two_regions_joined_by_their_doorway() -> None:
+    evidence = two_rooms()
+    cut = assemble(
+        survey(evidence), KITCHEN_AND_BEDROOM, ("kitchen", "bedroom"), evidence.cameras, Cut.none()
+    )
+    kitchen, bedroom = cut.partition.regions
+    assert (kitchen.region_id, kitchen.display_name, kitchen.object_ids, kitchen.frame_ids) == (
+        "r1",
+        "kitchen",
+        ("o0",),
+        ("f0",),
+    )
+    assert (bedroom.region_id, bedroom.function, bedroom.object_ids, bedroom.frame_ids) == (
+        "r2",
+        "bedroom",
+        ("o1",),
+        ("f1",),
+    )
+    assert kitchen.area == pytest.approx(16, rel=0.08)
+    assert bedroom.area == pytest.approx(16, rel=0.08)
+    assert kitchen.centroid == pytest.approx([2.0, 2.0, 0.0], abs=0.2)
+    (edge,) = cut.partition.edges
+    assert (edge.a, edge.b) == ("r1", "r2")
+    assert edge.width == pytest.approx(0.9, abs=0.2)
+    assert edge.position == pytest.approx([4.1, 2.05, 0.0], abs=0.25)
+    (floor,) = cut.partition.floors
+    assert floor.z == pytest.approx(0.0, abs=0.02)
+    assert floor.ceiling_z == pytest.approx(2.5, abs=0.02)
+
+
+def test_the_grid_names_the_region_of_every_cell() -> None:
+    evidence = two_rooms()
+    cut = assemble(
+        survey(evidence), KITCHEN_AND_BEDROOM, ("kitchen", "bedroom"), evidence.cameras, Cut.none()
+    )
+    (grid,) = cut.grids
+    assert grid.region_ids == ("r1", "r2")
+    assert grid.revision == 1
+    assert grid.regions[grid.cell_of(np.array([1.0, 1.0]))] == 1
+    assert grid.regions[grid.cell_of(np.array([7.0, 1.0]))] == 2
+
+
+def test_ids_survive_a_change_of_function_and_names_are_counted() -> None:
+    evidence = two_rooms()
+    surveyed = survey(evidence)
+    first = assemble(surveyed, KITCHEN_AND_BEDROOM, ("kitchen", "bedroom"), evidence.cameras, Cut.none())
+    swapped = replace(KITCHEN_AND_BEDROOM, centres=KITCHEN_AND_BEDROOM.centres[::-1])
+    second = assemble(surveyed, swapped, ("bedroom", "kitchen"), evidence.cameras, first)
+    functions = {region.region_id: region.function for region in second.partition.regions}
+    assert functions == {"r1": "kitchen", "r2": "bedroom"}
+    assert second.partition.revision == 2
+    assert second.next_number == 3
+    far = objects(("stove", 0.5, 0.5, 0.9), ("bed", 4.1, 2.0, 0.4), ("stove", 7.5, 3.5, 0.9))
+    third = assemble(surveyed, far, ("kitchen", "bedroom", "kitchen"), evidence.cameras, first)
+    assert sorted(region.display_name for region in third.partition.regions) == [
+        "bedroom",
+        "kitchen",
+        "kitchen 2",
+    ]
+
+
+def test_each_floor_is_cut_on_its_own() -> None:
+    below, above = room((0, 3), (0, 3), height=2.6), room((0, 3), (0, 3), floor=2.9, height=2.5)
+    evidence = seen((below, (1.5, 1.5, 1.2)), (above, (1.5, 1.5, 4.1)))
+    things = objects(("stove", 1, 1, 0.9), ("bed", 1, 1, 3.3))
+    surveyed = survey(evidence)
+    assert storeys_of_objects(surveyed, things.centres).tolist() == [0, 1]
+    cut = assemble(surveyed, things, ("kitchen", "bedroom"), evidence.cameras, Cut.none())
+    assert [(r.floor, r.function, r.object_ids, r.frame_ids) for r in cut.partition.regions] == [
+        (0, "kitchen", ("o0",), ("f0",)),
+        (1, "bedroom", ("o1",), ("f1",)),
+    ]
+    assert [r.region_id for r in cut.partition.regions] == ["r1", "r2"]
+    assert len(cut.grids) == 2
+    assert cut.partition.edges == ()
+
+
+def test_a_floor_found_later_below_does_not_take_the_ids_of_the_one_above() -> None:
+    above = seen((room((0, 3), (0, 3), floor=2.9), (1.5, 1.5, 4.1)))
+    first = assemble(survey(above), PlacedObjects.none(), (), above.cameras, Cut.none())
+    both = seen(
+        (room((0, 3), (0, 3), floor=2.9), (1.5, 1.5, 4.1)),
+        (room((0, 3), (0, 3), height=2.6), (1.5, 1.5, 1.2)),
+    )
+    second = assemble(survey(both), PlacedObjects.none(), (), both.cameras, first)
+    assert {region.floor: region.region_id for region in second.partition.regions} == {0: "r2", 1: "r1"}
+
+
+def test_a_scene_without_objects_is_unknown_and_one_without_frames_is_empty() -> None:
+    evidence = seen((room((0, 3), (0, 3)), (1.5, 1.5, 1.2)))
+    cut = assemble(survey(evidence), PlacedObjects.none(), (), evidence.cameras, Cut.none())
+    assert [region.function for region in cut.partition.regions] == ["unknown"]
+    empty = assemble(survey(FloorEvidence()), KITCHEN_AND_BEDROOM, ("kitchen", "bedroom"), {}, Cut.none())
+    assert empty.partition.regions == ()
+    assert empty.grids == ()
+    assert empty.partition.revision == 1
+
+
+def test_a_view_of_nothing_but_a_table_is_still_one_region() -> None:
+    rng = np.random.default_rng(3)
+    table = np.stack([rng.uniform(0, 1.5, 900), rng.uniform(1, 2, 900), rng.normal(0.72, 0.01, 900)], axis=1)
+    evidence = seen((table.astype(np.float32), (0.7, 0.2, 1.4)))
+    cut = assemble(
+        survey(evidence), objects(("cup", 0.7, 1.5, 0.8)), ("unknown",), evidence.cameras, Cut.none()
+    )
+    (region,) = cut.partition.regions
+    assert region.object_ids == ("o0",)
+    assert region.frame_ids == ("f0",)
