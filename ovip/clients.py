@@ -11,12 +11,11 @@ import json
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Sequence
 from typing import Any
 
-import cv2
 import grpc
 import numpy as np
 
 from ovip import codec
-from ovip.errors import Corrupt, OvipError, Unavailable, from_status
+from ovip.errors import OvipError, Unavailable, from_status
 from ovip.scene.answers import (
     FrameRecord,
     GatewayStatus,
@@ -42,7 +41,7 @@ from ovip.v1 import (
     vlm_pb2,
     vlm_pb2_grpc,
 )
-from ovip.wire import decode_depth
+from ovip.wire import decode_depth, decode_rgb
 
 MAX_MESSAGE_BYTES = 16 * 1024 * 1024
 _READ_SECONDS = 30.0
@@ -131,15 +130,12 @@ class PerceptionClient:
         )
         reply = await _read(lambda: self._stub.GetFrame(request, timeout=_READ_SECONDS))
         record = codec.frame_record_value(reply.frame)
-        bgr = cv2.imdecode(np.frombuffer(reply.rgb.data, np.uint8), cv2.IMREAD_COLOR)
-        if bgr is None:
-            raise Corrupt(f"frame {frame_id}: its colour image does not decode")
         return Frame(
             frame_id=record.frame_id,
             timestamp_ns=record.timestamp_ns,
             intrinsics=record.intrinsics,
             world_from_camera=record.world_from_camera,
-            rgb=np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2RGB), np.uint8),
+            rgb=decode_rgb(reply.rgb.data, record.intrinsics),
             depth=decode_depth(
                 reply.depth.data,
                 codec.DEPTH_ENCODINGS[reply.depth.encoding],

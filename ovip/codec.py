@@ -1,21 +1,24 @@
 """The only translator between protobuf messages and the values of the scene.
 
-`*_message` makes a message, `*_value` reads one. Reading raises InvalidInput for what cannot be a value: wrong
-lengths, non-finite numbers, unknown enum members.
+`*_message` makes a message, `*_value` reads one, `encode_*` and `decode_*` go to bytes. Reading raises Corrupt
+for what cannot be a value (lengths, enum members, bytes that do not parse), InvalidInput for a matrix not 4x4.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+from google.protobuf.message import DecodeError, Message
 
 from ovip.errors import Corrupt, InvalidInput
 from ovip.scene import answers as a
 from ovip.scene import types as t
 from ovip.scene.grid import FloorGrid
 from ovip.v1 import mapper_pb2, perception_pb2, regions_pb2, retrieval_pb2, types_pb2
+
+_Message = TypeVar("_Message", bound=Message)
 
 DEPTH_ENCODINGS = {
     types_pb2.DepthImage.ENCODING_UNSPECIFIED: "unspecified",
@@ -123,6 +126,10 @@ def detection_message(d: t.Detection) -> types_pb2.Detection:
 
 
 def detection_value(m: types_pb2.Detection) -> t.Detection:
+    if len(m.points) != 4 * len(m.colors):
+        raise Corrupt(
+            f"detection {m.detection_id}: {len(m.points)} bytes of points, {len(m.colors)} of colours"
+        )
     return t.Detection(
         detection_id=m.detection_id,
         label=m.label,
@@ -150,7 +157,7 @@ def encode_detection_batch(batch: t.DetectionBatch) -> bytes:
 
 
 def decode_detection_batch(data: bytes) -> t.DetectionBatch:
-    m = types_pb2.DetectionBatch.FromString(data)
+    m = _parsed(types_pb2.DetectionBatch, data)
     return t.DetectionBatch(
         frame_id=m.frame_id,
         timestamp_ns=m.timestamp_ns,
@@ -259,7 +266,7 @@ def encode_delta(delta: t.MapDelta) -> bytes:
 
 
 def decode_delta(data: bytes) -> t.MapDelta:
-    return delta_value(mapper_pb2.MapDelta.FromString(data))
+    return delta_value(_parsed(mapper_pb2.MapDelta, data))
 
 
 # Regions
@@ -326,7 +333,7 @@ def encode_partition(p: t.Partition) -> bytes:
 
 
 def decode_partition(data: bytes) -> t.Partition:
-    return partition_value(regions_pb2.Partition.FromString(data))
+    return partition_value(_parsed(regions_pb2.Partition, data))
 
 
 def floor_grid_message(g: FloorGrid) -> regions_pb2.GetFloorGridResponse:
@@ -364,7 +371,7 @@ def encode_floor_grid(g: FloorGrid) -> bytes:
 
 
 def decode_floor_grid(data: bytes) -> FloorGrid:
-    return floor_grid_value(regions_pb2.GetFloorGridResponse.FromString(data))
+    return floor_grid_value(_parsed(regions_pb2.GetFloorGridResponse, data))
 
 
 # Frames
@@ -529,7 +536,7 @@ def encode_answer(answer: a.Answer) -> bytes:
 
 
 def decode_answer(data: bytes) -> a.Answer:
-    return answer_value(retrieval_pb2.Answer.FromString(data))
+    return answer_value(_parsed(retrieval_pb2.Answer, data))
 
 
 def tier_report_message(r: a.TierReport) -> retrieval_pb2.TierReport:
@@ -629,3 +636,10 @@ def _polygon_message(ring: t.F64) -> types_pb2.Polygon:
 
 def _polygon_value(m: types_pb2.Polygon) -> t.F64:
     return np.array(list(m.xy), dtype=np.float64).reshape(-1, 2)
+
+
+def _parsed(kind: type[_Message], data: bytes) -> _Message:
+    try:
+        return kind.FromString(data)
+    except DecodeError as error:
+        raise Corrupt(f"{kind.__name__}: {len(data)} bytes do not parse") from error

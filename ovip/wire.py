@@ -7,10 +7,11 @@ import numpy as np
 import zstandard
 
 from ovip.errors import InvalidInput
-from ovip.scene.types import F32, U8, U16, Intrinsics
+from ovip.scene.types import F32, U8, U16, Bools, Intrinsics
 
 _JPEG, _PNG = b"\xff\xd8", b"\x89PNG\r\n\x1a\n"
 _MAX_PIXELS = 8192 * 8192
+_JPEG_FRAMES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}  # the markers that carry width and height
 
 
 def decode_rgb(data: bytes, k: Intrinsics) -> U8:
@@ -24,10 +25,7 @@ def decode_rgb(data: bytes, k: Intrinsics) -> U8:
         raise InvalidInput(
             f"colour image: expected JPEG or PNG bytes, got {len(data)} bytes starting {data[:4].hex() or 'nothing'}"
         )
-    bgr = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
-    if bgr is None:
-        raise InvalidInput(f"colour image: {len(data)} bytes do not decode as JPEG or PNG")
-    _check_size("colour image", bgr.shape, k)
+    bgr = _decode("colour image", data, k, cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION)
     return np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2RGB), np.uint8)
 
 
@@ -44,22 +42,30 @@ def decode_depth(data: bytes, encoding: str, scale: float, k: Intrinsics) -> F32
 def decode_depth_units(data: bytes, encoding: str, k: Intrinsics) -> U16:
     """`(H, W)` uint16 depth as sent."""
     if encoding == "png16":
-        raw = (
-            cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-            if data.startswith(_PNG)
-            else None
-        )
-        if raw is None:
-            raise InvalidInput(f"depth image: {len(data)} bytes do not decode as PNG")
+        if not data.startswith(_PNG):
+            raise InvalidInput(
+                f"depth image: expected PNG bytes, got {len(data)} bytes starting {data[:4].hex()}"
+            )
+        raw = _decode("depth image", data, k, cv2.IMREAD_UNCHANGED)
         if raw.dtype != np.uint16 or raw.ndim != 2:
             raise InvalidInput(
                 f"depth image: expected one channel of 16 bits, got {raw.dtype} with shape {raw.shape}"
             )
-        _check_size("depth image", raw.shape, k)
         return np.asarray(raw, np.uint16)
     if encoding == "shuffle_zstd":
         return _unshuffle(data, k)
     raise InvalidInput(f"depth image: expected encoding png16 or shuffle_zstd, got {encoding!r}")
+
+
+def decode_mask(what: str, data: bytes, k: Intrinsics) -> Bools:
+    """`(h, w)` of a grey PNG, non-zero is inside; InvalidInput about `what` where it is too large or broken."""
+    size = _size_of(data) if data.startswith(_PNG) else None
+    if size is None or size[0] > k.width or size[1] > k.height:
+        raise InvalidInput(
+            f"{what}: expected a PNG of at most {k.width}x{k.height}, got {len(data)} bytes"
+            + (f" of {size[0]}x{size[1]}" if size else " that do not decode")
+        )
+    return np.asarray(_pixels(what, data, cv2.IMREAD_GRAYSCALE) > 0)
 
 
 def encode_depth(raw: U16) -> bytes:
@@ -92,8 +98,37 @@ def _unshuffle(data: bytes, k: Intrinsics) -> U16:
     return np.cumsum(delta.reshape(k.height, k.width), axis=1, dtype=np.uint16)
 
 
-def _check_size(what: str, shape: tuple[int, ...], k: Intrinsics) -> None:
-    if shape[:2] != (k.height, k.width):
+def _decode(what: str, data: bytes, k: Intrinsics, flags: int) -> U8 | U16:
+    size = _size_of(data)
+    if size is not None and size != (k.width, k.height):
+        # before decoding: a small file may claim a huge image
         raise InvalidInput(
-            f"{what}: expected {k.width}x{k.height} like the intrinsics, got {shape[1]}x{shape[0]}"
+            f"{what}: expected {k.width}x{k.height} like the intrinsics, got {size[0]}x{size[1]}"
         )
+    if size is None:
+        raise InvalidInput(f"{what}: {len(data)} bytes do not decode: they name no width and height")
+    return _pixels(what, data, flags)
+
+
+def _pixels(what: str, data: bytes, flags: int) -> U8 | U16:
+    try:
+        pixels = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
+    except cv2.error:
+        pixels = None
+    if pixels is None:
+        raise InvalidInput(f"{what}: {len(data)} bytes do not decode")
+    return np.asarray(pixels)
+
+
+def _size_of(data: bytes) -> tuple[int, int] | None:
+    """Width and height that a PNG or JPEG claims in its header."""
+    if data.startswith(_PNG):
+        found = (int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big"))
+        return found if data[12:16] == b"IHDR" else None
+    at = 2
+    while at + 9 <= len(data) and data[at] == 0xFF:
+        marker = data[at + 1]
+        if marker in _JPEG_FRAMES:
+            return int.from_bytes(data[at + 7 : at + 9], "big"), int.from_bytes(data[at + 5 : at + 7], "big")
+        at += 1 if marker == 0xFF else 2 + int.from_bytes(data[at + 2 : at + 4], "big")
+    return None

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
-import cv2
-import numpy as np
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from ovip.client import Addresses, AsyncClient, Hello, OutgoingDetection, OutgoingFrame, StreamReport
+from ovip.client import Addresses, AsyncClient, StreamReport
+from ovip.client.replaying import hello_of, outgoing
 from ovip.client.streaming import StreamEvent
-from ovip.recordings import LAYOUTS, OnboardDetection, RecordedFrame, Recording, open_recording, parse_up
+from ovip.recordings import LAYOUTS, Recording, open_recording, parse_up
 from ovip.scene.answers import PerceptionStatus
 from ovip.scene.types import SceneMap
 from ovip_cli.stacks import DataDir, Json, Scene, Standalone, print_json, stack_for
@@ -47,14 +45,13 @@ async def _replay(
     recording: Recording, addresses: Addresses, scene: str, robot: str, quiet: bool
 ) -> dict[str, Any]:
     began = time.monotonic()
-    session = f"{recording.fingerprint()[:16]}-s{recording.stride}"
-    hello = Hello(scene, robot, session, recording.intrinsics, recording.world_from_source)
+    hello = hello_of(recording, scene, robot)
     console = Console(stderr=True, quiet=quiet)
     for note in recording.notes:
         console.print(f"note: {note}")
     async with AsyncClient(addresses) as client:
         with _Bars(console, len(recording)) as bars:
-            report = await client.stream(hello, _outgoing(recording), on_event=bars.on_event)
+            report = await client.stream(hello, outgoing(recording), on_event=bars.on_event)
             bars.streamed(report)
             scene_map = await client.wait_until_applied(scene, on_progress=bars.on_progress)
         partition = await client.regions.recompute(scene)
@@ -88,33 +85,6 @@ def _say(result: dict[str, Any]) -> None:
     )
     if result["resumed_after"]:
         print(f"resumed: frames up to {result['resumed_after']} were already there")
-
-
-def _outgoing(recording: Recording) -> Iterator[OutgoingFrame]:
-    for frame in recording:
-        yield OutgoingFrame(
-            sequence=frame.index + 1,
-            timestamp_ns=frame.timestamp_ns,
-            world_from_camera=frame.world_from_camera,
-            rgb=frame.rgb_bytes,
-            depth=frame.depth_bytes,
-            depth_scale=frame.depth_scale,
-            detections=_outgoing_detections(frame),
-        )
-
-
-def _outgoing_detections(frame: RecordedFrame) -> tuple[OutgoingDetection, ...] | None:
-    return None if frame.onboard is None else tuple(_outgoing_detection(d) for d in frame.onboard)
-
-
-def _outgoing_detection(d: OnboardDetection) -> OutgoingDetection:
-    feature = () if d.feature is None else tuple(float(v) for v in d.feature)
-    if d.mask is None or not d.mask.any():
-        return OutgoingDetection(d.label, d.score, d.box2, feature=feature)
-    rows, columns = np.flatnonzero(d.mask.any(axis=1)), np.flatnonzero(d.mask.any(axis=0))
-    part = d.mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    png = cv2.imencode(".png", part.astype(np.uint8) * 255)[1].tobytes()
-    return OutgoingDetection(d.label, d.score, d.box2, png, int(columns[0]), int(rows[0]), feature)
 
 
 class _Bars:

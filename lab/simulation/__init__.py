@@ -2,11 +2,13 @@
 
 from lab.simulation.camera import pose_looking
 from lab.simulation.detecting import onboard_detections
+from lab.simulation.robot import SimulatedRobot
 from lab.simulation.room import SimulatedObject, SimulatedRoom
 from lab.simulation.writing import recorded_frames, write_recording
 
 __all__ = [
     "SimulatedObject",
+    "SimulatedRobot",
     "SimulatedRoom",
     "onboard_detections",
     "pose_looking",

@@ -22,6 +22,7 @@ from ovip.scene.types import F32, F64, U8, U16, Intrinsics
 CEILING = 2.6
 DOOR_TOP = 2.05
 ROBOT_HEIGHT = 1.4
+EYE_HEIGHT, PITCH = 1.3, -0.28  # of the robot's camera: metres, radians
 
 STRUCTURE = ("floor", "ceiling", "wall")
 
@@ -108,7 +109,6 @@ _ROUTE = (
     ((3.6, 0.9), (4.3, 2.4)),
     ((3.0, 1.5), (4.5, 2.5)),
 )
-_EYE_HEIGHT, _PITCH = 1.3, -0.28
 
 
 class SimulatedRoom:
@@ -131,7 +131,7 @@ class SimulatedRoom:
     def walk(self) -> list[F64]:
         """Poses `(4, 4)` of the robot's round: 1.3 m high, a little downwards, small steps, clear of all."""
         places, targets = zip(*_ROUTE, strict=True)
-        return smooth_walk(np.array(places), np.array(targets), _EYE_HEIGHT, _PITCH)
+        return smooth_walk(np.array(places), np.array(targets), EYE_HEIGHT, PITCH)
 
     def is_free(self, xy: F64, clearance: float = 0.2) -> bool:
         """Whether a robot of radius `clearance` can stand at floor point `xy` `(2,)` metres."""

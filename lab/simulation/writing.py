@@ -44,9 +44,12 @@ def write_recording(folder: Path, room: SimulatedRoom, poses: Sequence[F64] | No
     return count
 
 
-def recorded_frames(room: SimulatedRoom, poses: Sequence[F64]) -> Iterator[RecordedFrame]:
-    """What the robot sends from each pose, ten frames a second: images and what it detected on board."""
-    for index, pose in enumerate(poses):
+def recorded_frames(room: SimulatedRoom, poses: Sequence[F64], first: int = 0) -> Iterator[RecordedFrame]:
+    """What the robot sends from each pose, ten frames a second: images and what it detected on board.
+
+    first: the index of the first of them.
+    """
+    for index, pose in enumerate(poses, first):
         rgb, depth, ids = room.render(pose)
         yield RecordedFrame(
             index=index,

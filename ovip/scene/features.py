@@ -9,10 +9,9 @@ from ovip.scene.types import F32
 
 def normalize(features: F32) -> F32:
     """`(..., D)` features scaled to unit length; a zero vector stays zero."""
-    features = np.asarray(features, dtype=np.float32)
-    length = np.linalg.norm(features, axis=-1, keepdims=True)
-    unit: F32 = np.divide(features, length, out=np.zeros_like(features), where=length > 0)
-    return unit
+    wide = np.asarray(features, dtype=np.float64)  # squares of large or tiny numbers leave float32
+    length = np.linalg.norm(wide, axis=-1, keepdims=True)
+    return np.divide(wide, length, out=np.zeros_like(wide), where=length > 0).astype(np.float32)
 
 
 def cosine(a: F32, b: F32) -> F32:

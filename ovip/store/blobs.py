@@ -57,7 +57,9 @@ class DirectoryBlobs:
         if target.exists():
             return ref
         try:
-            target.parent.mkdir(parents=True, exist_ok=True)
+            if not target.parent.exists():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                _sync_directory(self._root)
             handle, aside = tempfile.mkstemp(dir=target.parent)
             try:
                 with os.fdopen(handle, "wb") as file:
@@ -80,14 +82,14 @@ class DirectoryBlobs:
             data = self._path(ref).read_bytes()
         except FileNotFoundError as error:
             raise NotFound(f"blob {ref} is not in the blob store") from error
+        except OSError as error:
+            raise Unavailable(f"blob {ref} could not be read from {self._root}: {error.strerror}") from error
         if hashlib.sha256(data).hexdigest() != ref:
             raise Corrupt(f"blob {ref} does not hash to its name: the file was changed or damaged")
         return data
 
     def _path(self, ref: str) -> Path:
-        if len(ref) != 64 or not all(letter in "0123456789abcdef" for letter in ref):
-            raise InvalidInput(f"blob reference: expected 64 hex digits, got {ref[:80]!r}")
-        return self._root / ref[:2] / ref
+        return self._root / ref[:2] / _checked(ref)
 
 
 class S3Blobs:
@@ -109,7 +111,7 @@ class S3Blobs:
         return ref
 
     async def get(self, ref: str) -> bytes:
-        reply = await asyncio.to_thread(self._call, "get_object", Key=self._key(ref))
+        reply = await asyncio.to_thread(self._call, "get_object", Key=self._key(_checked(ref)))
         data: bytes = await asyncio.to_thread(reply["Body"].read)
         if hashlib.sha256(data).hexdigest() != ref:
             raise Corrupt(f"blob {ref} does not hash to its name: the object was changed or damaged")
@@ -129,6 +131,12 @@ class S3Blobs:
 
     def _key(self, ref: str) -> str:
         return f"{self._prefix}/{ref}" if self._prefix else ref
+
+
+def _checked(ref: str) -> str:
+    if len(ref) != 64 or not all(letter in "0123456789abcdef" for letter in ref):
+        raise InvalidInput(f"blob reference: expected 64 hex digits, got {ref[:80]!r}")
+    return ref
 
 
 def _sync_directory(path: Path) -> None:

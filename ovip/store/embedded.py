@@ -17,6 +17,7 @@ from typing import IO
 from ovip.errors import Conflict, InvalidInput, NotConfigured, Unavailable
 
 _START_SECONDS = 60.0
+_LOCK_SECONDS = 10.0  # a killed predecessor's server needs a moment to go
 _LONGEST_SOCKET_PATH = 100
 
 
@@ -88,8 +89,13 @@ class EmbeddedServer:
         self.socket.unlink(missing_ok=True)
         self._lock.close()
 
+    def last_words(self) -> str:
+        """The end of the server's own log."""
+        log = self.directory / "server.log"
+        return log.read_text(errors="replace")[-600:].strip() if log.exists() else "nothing"
+
     def _take_lock(self) -> None:
-        deadline = time.monotonic() + 10.0  # a killed predecessor's server needs a moment to go
+        deadline = time.monotonic() + _LOCK_SECONDS
         while True:
             try:
                 fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -114,12 +120,9 @@ class EmbeddedServer:
         while not self.socket.exists():
             if self._process.poll() is not None or time.monotonic() > deadline:
                 self.close()
-                raise Unavailable(f"the embedded store did not start; it says: {self._last_words()}")
+                raise Unavailable(f"the embedded store did not start; it says: {self.last_words()}")
             time.sleep(0.02)
 
-    def _last_words(self) -> str:
-        log = self.directory / "server.log"
-        return log.read_text(errors="replace")[-600:].strip() if log.exists() else "nothing"
 
 
 def _die_with_parent() -> None:

@@ -62,6 +62,10 @@ local cursor = redis.call('HGET', KEYS[2], 'cursor') or '0-0'
 local ms, seq = parts(ARGV[3])
 local done_ms, done_seq = parts(cursor)
 if ms < done_ms or (ms == done_ms and seq <= done_seq) then return {0} end
+for k = 3, #KEYS do  -- a script that fails half way keeps what it wrote before
+  local kind = redis.call('TYPE', KEYS[k]).ok
+  if kind ~= 'none' and kind ~= 'stream' then return redis.error_reply('ERR ' .. KEYS[k] .. ' is no log') end
+end
 local at = 5
 for _ = 1, tonumber(ARGV[4]) do
   redis.call('HSET', KEYS[2], 'v:' .. ARGV[at], ARGV[at + 1])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import re
 from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -23,6 +24,7 @@ from ovip.store.blobs import BlobStore, open_blobs
 from ovip.store.embedded import EmbeddedServer
 
 START = "0-0"
+_LOG_ID = re.compile(r"[0-9]{1,15}-[0-9]{1,15}")  # numbers that Lua's doubles hold exactly
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,10 +110,11 @@ class Store:
                     socket_timeout=30,
                     socket_connect_timeout=5,
                 )
-            except ValueError as error:
+            except ValueError:
+                # neither the value nor what is wrong with it: it may hold a password
                 raise InvalidInput(
-                    f"OVIP_REDIS_URL: expected redis://host:port/db, got {settings.redis_url!r}"
-                ) from error
+                    "OVIP_REDIS_URL: expected redis://host:port/db, rediss://host:port/db or unix:///path"
+                ) from None
         else:
             # started from this thread: the server dies with the thread that started it
             server = EmbeddedServer(settings.data_dir, settings.store_fsync)
@@ -121,9 +124,10 @@ class Store:
         store = cls(client, blobs, server)
         try:
             await store._wait_until_loaded()
-        except Unavailable:
+        except Unavailable as error:
             await store.close()
-            raise
+            where = f"the embedded store says: {server.last_words()}" if server else "see OVIP_REDIS_URL"
+            raise Unavailable(f"{error}; {where}") from error
         return store
 
     async def close(self) -> None:
@@ -231,6 +235,8 @@ class Store:
         Raises LeaseLost where another writer holds the stage. Idempotent: an input at or before the cursor
         changes nothing.
         """
+        if not _LOG_ID.fullmatch(input_id):
+            raise InvalidInput(f"input_id: expected a log id like 1700000000000-0, got {input_id[:80]!r}")
         puts = puts or {}
         args: list[bytes | str | int] = [lease.owner, lease.fence, input_id, len(puts)]
         for pair in puts.items():

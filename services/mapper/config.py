@@ -16,7 +16,7 @@ _ASSOCIATION = AssociationParams()
 class Settings(KernelSettings):
     """How detections become objects, and how often the map is written down whole."""
 
-    port: int = Field(50052, validation_alias="OVIP_MAPPER_PORT", description="gRPC port; 0: any free one")
+    mapper_port: int = Field(50052, ge=0, le=65535, description="port the mapper listens on; 0: any free one")
     tau: float = Field(
         _ASSOCIATION.tau, description="association score that a detection must exceed to join an object"
     )
@@ -31,6 +31,11 @@ class Settings(KernelSettings):
         _UPKEEP.confirm_frames, ge=1, description="frames that must see an object to believe it"
     )
     snapshot_every: int = Field(50, ge=1, description="commits between snapshots of the whole map")
+
+    @property
+    def port(self) -> int:
+        """The port to listen on."""
+        return self.mapper_port
 
     def map_params(self) -> MapParams:
         """The numbers that the domain takes."""

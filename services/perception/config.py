@@ -13,8 +13,8 @@ from ovip.config import KernelSettings
 class Settings(KernelSettings):
     """What detects, how strictly, and how many frames may wait."""
 
-    port: int = Field(
-        50051, validation_alias="OVIP_PERCEPTION_PORT", description="gRPC port; 0: any free one"
+    perception_port: int = Field(
+        50051, ge=0, le=65535, description="port perception listens on; 0: any free one"
     )
     models: Literal["embedded", "given", "full"] = Field(
         "embedded", description="embedded: small CPU models; given: robots send detections; full: GPU models"
@@ -48,6 +48,11 @@ class Settings(KernelSettings):
         "laion/CLIP-ViT-H-14-laion2B-s32B-b79K", description="hub name or directory, for models=full"
     )
     full_device: str = Field("cuda", description="torch device, for models=full")
+
+    @property
+    def port(self) -> int:
+        """The port to listen on."""
+        return self.perception_port
 
     @field_validator("models_dir")
     @classmethod

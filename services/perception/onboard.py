@@ -6,13 +6,13 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 
 from ovip.errors import InvalidInput
 from ovip.scene.features import normalize
 from ovip.scene.types import F32, Bools, Box2, Intrinsics
 from ovip.scene.words import normalize_word
+from ovip.wire import decode_mask
 from services.perception.domain.boxes2d import ScoredBox
 
 MOST_DETECTIONS = 500
@@ -89,22 +89,14 @@ def mask_of(detection: OnboardDetection, k: Intrinsics) -> Bools | None:
     """The mask `(H, W)`, or None where the robot sent none. InvalidInput where it does not decode or fit."""
     if detection.mask is None:
         return None
-    raw = (
-        cv2.imdecode(np.frombuffer(detection.mask.png, np.uint8), cv2.IMREAD_GRAYSCALE)
-        if detection.mask.png
-        else None
-    )
-    if raw is None:
-        raise InvalidInput(
-            f"mask of {detection.label!r}: expected a PNG, got {len(detection.mask.png)} bytes that do not decode"
-        )
+    raw = decode_mask(f"mask of {detection.label!r}", detection.mask.png, k)
     x, y = detection.mask.x, detection.mask.y
     if x + raw.shape[1] > k.width or y + raw.shape[0] > k.height:
         raise InvalidInput(
             f"mask of {detection.label!r}: {raw.shape[1]}x{raw.shape[0]} at ({x}, {y}) leaves the image of {k.width}x{k.height}"
         )
     mask = np.zeros((k.height, k.width), dtype=bool)
-    mask[y : y + raw.shape[0], x : x + raw.shape[1]] = raw > 0
+    mask[y : y + raw.shape[0], x : x + raw.shape[1]] = raw
     return mask
 
 
@@ -114,8 +106,8 @@ def feature_of(detection: OnboardDetection) -> F32 | None:
 
 
 def _checked(i: int, d: OnboardDetection, k: Intrinsics, dimension: int) -> OnboardDetection:
-    what = f"detection {i}"
-    if not d.label.strip() or len(d.label) > 100:
+    what, word = f"detection {i}", normalize_word(d.label)
+    if not word or len(d.label) > 100:
         raise InvalidInput(f"{what}: expected a label of 1 to 100 characters, got {d.label[:100]!r}")
     if not 0.0 <= d.score <= 1.0:
         raise InvalidInput(f"{what} ({d.label}): expected a score of 0 to 1, got {d.score}")
@@ -132,4 +124,6 @@ def _checked(i: int, d: OnboardDetection, k: Intrinsics, dimension: int) -> Onbo
             f"got {len(d.feature)}"
         )
     mask_of(d, k)
-    return OnboardDetection(normalize_word(d.label), d.score, d.box, d.mask, d.feature)
+    # a view weighs by its box's area in the image, so what lies beyond must not count
+    box = Box2(max(d.box.x0, 0.0), max(d.box.y0, 0.0), min(d.box.x1, k.width), min(d.box.y1, k.height))
+    return OnboardDetection(word, d.score, box, d.mask, d.feature)

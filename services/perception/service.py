@@ -27,6 +27,7 @@ from services.perception.onboard import OnboardDetection, check_onboard, decode_
 MOST_GROUNDED_FRAMES = 64
 MOST_WORDS = 32
 MOST_TEXTS = 512
+_CREDITS_SECONDS = 0.2  # how long a count of the backlog holds: acks need not ask the store each time
 _LATEST_TIMESTAMP_NS = 2**63 - 1
 log = get_logger("perception")
 
@@ -63,6 +64,7 @@ class Perception:
         self._store = store
         self._detecting = detecting
         self._settings = settings
+        self._credits: dict[str, tuple[float, int]] = {}
         self.history = FrameHistory(store)
 
     async def open_session(
@@ -97,10 +99,15 @@ class Perception:
 
     async def credits(self, scene: str) -> int:
         """How many frames a stream may have in flight: the window, down to one as the backlog fills."""
-        durable = await self._store.length(scene, FRAMES)
-        done, _, _ = await self._counts(scene)
-        room = self._settings.max_backlog - (durable - done)
-        return int(np.clip(room, 1, self._settings.window))
+        now = asyncio.get_running_loop().time()
+        counted_at, credits = self._credits.get(scene, (-_CREDITS_SECONDS, 1))
+        if now - counted_at >= _CREDITS_SECONDS:
+            durable = await self._store.length(scene, FRAMES)
+            processed, skipped, _ = await self._counts(scene)
+            room = self._settings.max_backlog - (durable - processed - skipped)
+            credits = int(np.clip(room, 1, self._settings.window))
+            self._credits[scene] = (now, credits)
+        return credits
 
     async def applied(self, session: Session, after: str) -> AsyncIterator[str]:
         """Frame ids of a session as the mapper commits them, from a map log id on, for ever."""

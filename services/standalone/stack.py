@@ -91,7 +91,7 @@ def _overrides(name: str, settings: Settings, key: str, addresses: dict[str, str
     fields = ("redis_url", "data_dir", "blob_url", "host", "log_level", "log_json")
     shared = {field: getattr(settings, field) for field in fields}
     up = {f"{other}_address": address for other, address in addresses.items()}
-    port = {"api_port" if name == "api" else "port": 0} if settings.free_ports else {}
+    port = {f"{name}_port": 0} if settings.free_ports else {}
     return {**shared, "api_key": key, **port, **up}
 
 

@@ -17,7 +17,7 @@ from ovip.scene.types import F32, F64, I64, U8, Box2, Detection, DetectionBatch,
 from services.mapper.domain.association import NEW, AssociationParams, associate
 from services.mapper.domain.cloud import VoxelCloud
 from services.mapper.domain.fusion import FusionParams, view_weight
-from services.mapper.domain.upkeep import UpkeepParams, denoised, overlap
+from services.mapper.domain.upkeep import UpkeepParams, denoised, inside, overlap
 
 SNAPSHOT_FORMAT = 1
 
@@ -86,20 +86,23 @@ class ObjectMap:
         self._dirty: set[str] = set()
 
     def integrate(self, batch: DetectionBatch) -> MapDelta:
-        """Associates and fuses one frame's detections; every `upkeep.every` batches, upkeep. One version a batch."""
+        """Associates and fuses one frame's detections, merges what became one; every `upkeep.every` batches, upkeep.
+
+        One version a batch."""
         self._check(batch)
         self.version += 1
         self._batches += 1
         self.frames += not batch.late
         self.detections += len(batch.detections)
         created, updated = self._fuse_batch(batch)
+        aliases = self._merge_duplicates(created | updated)
         removed: list[str] = []
-        aliases: dict[str, str] = {}
         if self._batches % self.params.upkeep.every == 0:
-            aliases = self._merge_duplicates()
+            self._denoise()
+            aliases |= self._merge_duplicates(self._dirty)
             removed = self._forget()
-            updated |= set(aliases.values())
             self._dirty.clear()
+        updated |= {self.resolve(survivor) for survivor in aliases.values()}
         for object_id in created | updated:
             if object_id in self._objects:
                 self._objects[object_id].version = self.version
@@ -274,14 +277,16 @@ class ObjectMap:
         o.refresh()
         return o.object_id
 
-    def _merge_duplicates(self) -> dict[str, str]:
-        """Changed objects, oldest first, take in the younger or smaller ones that are the same thing."""
+    def _denoise(self) -> None:
         for object_id in sorted(self._dirty & self._objects.keys()):
             o = self._objects[object_id]
             o.cloud = denoised(o.cloud, self.params.upkeep)
             o.box = o.cloud.box
+
+    def _merge_duplicates(self, changed: set[str]) -> dict[str, str]:
+        """Changed objects, oldest first, join those that are the same thing; the one seen in more frames stays."""
         aliases: dict[str, str] = {}
-        for object_id in sorted(self._dirty):
+        for object_id in sorted(changed):
             while object_id in self._objects:
                 twin = self._twin_of(self._objects[object_id])
                 if twin is None:
@@ -297,7 +302,7 @@ class ObjectMap:
         return (-self._objects[object_id].frames, object_id)
 
     def _twin_of(self, o: _Object) -> str | None:
-        """The first object of the same label and like feature whose cloud lies on this one's, or this one on it."""
+        """The first object of the same label and like feature in the same place."""
         upkeep = self.params.upkeep
         others = [p for p in self._objects.values() if p is not o and p.label == o.label]
         if not others:
@@ -306,9 +311,15 @@ class ObjectMap:
         near = touching(o.box + slack, np.stack([p.box for p in others]))
         for p in (p for p, close in zip(others, near, strict=True) if close):
             alike = float(o.feature @ p.feature) > upkeep.merge_similarity
-            if alike and overlap(o.cloud, p.cloud, upkeep.reach) > upkeep.merge_overlap:
+            if alike and self._same_place(o, p):
                 return p.object_id
         return None
+
+    def _same_place(self, o: _Object, p: _Object) -> bool:
+        upkeep = self.params.upkeep
+        if inside(o.box, p.box, self.params.voxel / 2) > upkeep.merge_inside:
+            return True
+        return overlap(o.cloud, p.cloud, upkeep.reach) > upkeep.merge_overlap
 
     def _absorb(self, keep: _Object, gone: _Object) -> None:
         """The accumulators of both objects added: counts, S, Omega, voxel sums."""

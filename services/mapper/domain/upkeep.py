@@ -9,7 +9,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ovip.scene.types import F32, Bools
+from ovip.scene.boxes import pairwise_intersection, volume
+from ovip.scene.types import F32, F64, Bools
 from services.mapper.domain.cloud import VoxelCloud
 
 
@@ -17,6 +18,8 @@ from services.mapper.domain.cloud import VoxelCloud
 class UpkeepParams:
     """every: detection batches between upkeeps. merge_overlap: share of the smaller cloud that lies on the other.
 
+    merge_inside: share of the smaller box's volume inside the other's, which decides where the clouds show opposite
+    sides of a small thing and do not touch.
     merge_similarity: cosine that two objects to merge must have, besides the same majority label.
     reach: metres within which a point lies on another cloud. confirm_frames: frames that must see an object before
     readers get it. forget_after: batches without a view after which an unconfirmed object is dropped.
@@ -25,6 +28,7 @@ class UpkeepParams:
 
     every: int = 10
     merge_overlap: float = 0.35
+    merge_inside: float = 0.7
     merge_similarity: float = 0.85
     reach: float = 0.04
     confirm_frames: int = 3
@@ -49,6 +53,13 @@ def overlap(a: VoxelCloud, b: VoxelCloud, reach: float) -> float:
     small, large = (a, b) if len(a) <= len(b) else (b, a)
     distance, _ = cKDTree(large.points).query(small.points, distance_upper_bound=reach)
     return float(np.isfinite(distance).mean())
+
+
+def inside(a: F64, b: F64, slack: float) -> float:
+    """Share of the smaller box's volume inside the other's; boxes `(6,)` grown by `slack` metres on each side."""
+    grown = np.stack([a, b]) + np.array([-slack] * 3 + [slack] * 3)
+    shared = pairwise_intersection(grown[:1], grown[1:])[0, 0]
+    return float(shared / volume(grown).min())
 
 
 def _large_clusters(points: F32, params: UpkeepParams) -> Bools:
