@@ -20,8 +20,8 @@ test: dev browser  ## run the tests (PYTEST_ARGS="-k kitchen" and the like)
 check: check-lock check-format check-lint check-types check-imports check-proto  ## format, lint, types, layers, API
 	@echo "check: all good"
 
-bench: setup  ## measure the hot paths
-	@$(bin)/ovip bench $(BENCH_ARGS)
+bench:  ## measure an install from nothing against its budget
+	@scripts/measure-install.sh
 
 format: dev  ## format the code and mend what ruff can mend
 	@$(bin)/ruff format .

@@ -320,7 +320,7 @@ def _errors() -> Iterator[None]:
 
 def error_of(error: grpc.aio.AioRpcError) -> OvipError:
     """The error of our tree that a gRPC status stands for."""
-    trailing = {key: value for key, value in (error.trailing_metadata() or ())}
+    trailing = dict(error.trailing_metadata() or ())
     slug = str(trailing.get("ovip-error", ""))
     return from_status(error.code().name, error.details() or error.code().name, slug)
 
@@ -335,7 +335,7 @@ def _key_interceptors(api_key: str | None) -> list[Any]:
 def _key_interceptor(kind: str, value: str) -> Any:
     base = getattr(grpc.aio, f"{kind}ClientInterceptor")
 
-    async def intercept(self: Any, continuation: Any, details: Any, request: Any) -> Any:
+    async def intercept(_self: Any, continuation: Any, details: Any, request: Any) -> Any:
         metadata = grpc.aio.Metadata(*(details.metadata or ()))
         metadata.add("authorization", value)
         return await continuation(details._replace(metadata=metadata), request)

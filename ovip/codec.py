@@ -411,6 +411,7 @@ def perception_status_message(s: a.PerceptionStatus) -> perception_pb2.GetPercep
         backend=s.backend,
         feature_space=s.feature_space,
         detections=s.detections,
+        newest_detections_id=s.newest_detections_id,
     )
 
 
@@ -424,6 +425,7 @@ def perception_status_value(m: perception_pb2.GetPerceptionStatusResponse) -> a.
         backend=m.backend,
         feature_space=m.feature_space,
         detections=m.detections,
+        newest_detections_id=m.newest_detections_id,
     )
 
 

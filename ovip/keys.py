@@ -31,6 +31,12 @@ def check_name(name: str, what: str) -> str:
     return name
 
 
+def log_order(log_id: str) -> tuple[int, int]:
+    """Where an entry's id stands in its log; an empty id stands before all."""
+    first, _, second = log_id.partition("-")
+    return int(first or 0), int(second or 0)
+
+
 def stream(scene: str, name: str) -> str:
     return f"{_tag(scene)}:stream:{name}"
 

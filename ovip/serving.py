@@ -139,7 +139,8 @@ def _bind(server: grpc.aio.Server, name: str, host: str, port: int) -> int:
         bound = 0
     if not bound:
         raise InvalidInput(
-            f"{name}: port {port} on {host} is taken or not allowed; free it or set OVIP_{name.upper()}_PORT to another (0: any free one)"
+            f"{name}: port {port} on {host} is taken or not allowed; "
+            f"free it or set OVIP_{name.upper()}_PORT to another (0: any free one)"
         )
     return int(bound)
 

@@ -30,4 +30,4 @@ def configure_logging(level: str, as_json: bool) -> None:
 
 def get_logger(name: str) -> Any:
     """A logger that says which part speaks: `log.info("frame_durable", scene=..., frame_id=...)`."""
-    return structlog.get_logger().bind(part=name)
+    return structlog.get_logger(part=name)  # lazy: takes the configuration of when it first speaks

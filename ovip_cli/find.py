@@ -53,9 +53,9 @@ async def _find(query: Query, addresses: Addresses, frame: OutputFrame, quiet: b
 
     async with AsyncClient(addresses) as client:
         search_id, answer = "", None
-        async for search_id, event in client.retrieval.find(query):
+        async for current_id, event in client.retrieval.find(query):
             show(event)
-            answer = event if isinstance(event, Answer) else answer
+            search_id, answer = current_id, event if isinstance(event, Answer) else answer
         assert answer is not None  # the last event is the answer
         source = None
         if frame is OutputFrame.SOURCE:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
-from ovip.serving import until_told
 from ovip.telemetry import configure_logging
 from ovip_cli.stacks import DataDir, Json, print_json
 from services.standalone.config import Settings
-from services.standalone.stack import Stack, running_stack
+
+if TYPE_CHECKING:
+    from services.standalone.stack import Stack
 
 
 def up(data_dir: DataDir = None, json: Json = False) -> None:
@@ -20,6 +22,10 @@ def up(data_dir: DataDir = None, json: Json = False) -> None:
 
 
 async def _run(settings: Settings, as_json: bool) -> None:
+    # every service: two seconds that the other commands need not wait
+    from ovip.serving import until_told
+    from services.standalone.stack import running_stack
+
     async with running_stack(settings) as stack:
         if as_json:
             print_json({**asdict(stack), "dashboard": stack.dashboard})

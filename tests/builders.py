@@ -41,9 +41,7 @@ def camera(width: int = 64, height: int = 48, focal: float = 60.0) -> Intrinsics
 
 def pose(x: float = 0.0, y: float = 0.0, z: float = 0.0, yaw: float = 0.0, pitch: float = 0.0) -> F64:
     """world_from_camera of a camera at `(x, y, z)` that looks along +x at yaw 0, and down for positive pitch."""
-    forward = np.array(
-        [math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch), -math.sin(pitch)]
-    )
+    forward = np.array([math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch), -math.sin(pitch)])
     right = np.array([math.sin(yaw), -math.cos(yaw), 0.0])
     made = np.eye(4)
     made[:3, 0], made[:3, 1], made[:3, 2] = right, np.cross(forward, right), forward
@@ -110,7 +108,9 @@ def frame(
 # What a robot sends
 
 
-def hello(scene: str = "kitchen", session: str = "s1", k: Intrinsics | None = None, robot: str = "r1") -> Hello:
+def hello(
+    scene: str = "kitchen", session: str = "s1", k: Intrinsics | None = None, robot: str = "r1"
+) -> Hello:
     """The first word of a robot's stream."""
     return Hello(scene, robot, session, k or camera())
 
@@ -174,7 +174,9 @@ def detection(
     )
 
 
-def batch(number: int, *detections: Detection, late: bool = False, k: Intrinsics | None = None) -> DetectionBatch:
+def batch(
+    number: int, *detections: Detection, late: bool = False, k: Intrinsics | None = None
+) -> DetectionBatch:
     """The detections of frame `number`."""
     return DetectionBatch(
         frame_id=f"r.s.{number:08d}",
@@ -188,12 +190,41 @@ def batch(number: int, *detections: Detection, late: bool = False, k: Intrinsics
     )
 
 
+def random_run(seed: int, frames: int, dimension: int = 6) -> list[DetectionBatch]:
+    """A robot that looks at six things from anywhere: moved boxes, mixed labels, some false ones, some late."""
+    rng = np.random.default_rng(seed)
+    kinds = normalize(rng.normal(size=(6, dimension)).astype(np.float32))
+    places = rng.uniform(0, 2.0, (6, 3))
+
+    def seen() -> Detection:
+        i = int(rng.integers(6))
+        low = places[i] + rng.normal(0, 0.03, 3)
+        high = low + rng.uniform(0.1, 0.5, 3)
+        corner = rng.integers(0, 30, 2)
+        return detection(
+            str(rng.choice(["cup", "mug", "table"])) if rng.random() < 0.2 else ["cup", "mug", "table"][i % 3],
+            points=block(tuple(low), tuple(high), 0.12),
+            feature=normalize((kinds[i] + rng.normal(0, 0.1, dimension)).astype(np.float32)),
+            box2=Box2(float(corner[0]), float(corner[1]), float(corner[0]) + 20, float(corner[1]) + 15),
+            color=tuple(int(c) for c in rng.integers(0, 256, 3)),
+        )
+
+    return [
+        batch(n, *(seen() for _ in range(int(rng.integers(0, 5)))), late=bool(rng.random() < 0.1))
+        for n in range(1, frames + 1)
+    ]
+
+
 def same(a: Any, b: Any) -> bool:
     """Whether two values are equal through and through: dataclasses by field, arrays by type, shape and number."""
     if dataclasses.is_dataclass(a) and not isinstance(a, type):
-        return type(a) is type(b) and all(same(getattr(a, f.name), getattr(b, f.name)) for f in dataclasses.fields(a))
+        return type(a) is type(b) and all(
+            same(getattr(a, f.name), getattr(b, f.name)) for f in dataclasses.fields(a)
+        )
     if isinstance(a, np.ndarray):
-        return isinstance(b, np.ndarray) and a.dtype == b.dtype and a.shape == b.shape and np.array_equal(a, b)
+        return (
+            isinstance(b, np.ndarray) and a.dtype == b.dtype and a.shape == b.shape and np.array_equal(a, b)
+        )
     if isinstance(a, tuple | list):
         return type(a) is type(b) and len(a) == len(b) and all(map(same, a, b))
     return bool(a == b)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -22,8 +23,8 @@ _STEP = 0.05  # metres between places where a way is checked
 class SimulatedRobot:
     """Speaks to a real stack, over gRPC like any robot, and sends what it detects on board with each frame.
 
-    radius: metres that it keeps from everything. place: `(2,)` where it stands, None before it has been
-    anywhere. travelled: metres driven to viewpoints.
+    radius: metres that it keeps from everything. pose: `(4, 4)` of its camera; it starts where its walk ends.
+    travelled: metres driven to viewpoints.
     """
 
     def __init__(
@@ -36,7 +37,7 @@ class SimulatedRobot:
         self._walk = room.walk()
         self._radius = radius
         self._next: int | None = None
-        self.place: F64 | None = None
+        self.pose: F64 = self._walk[-1]
         self.travelled = 0.0
 
     @property
@@ -48,7 +49,7 @@ class SimulatedRobot:
         """Streams its round through the home; what is durable already is not sent again."""
         frames = outgoing(recorded_frames(self._room, self._walk))
         report = await self._client.stream(self._hello("walk"), frames, on_event=on_event)
-        self.place = self._walk[-1][:2, 3]
+        self.pose = self._walk[-1]
         return report
 
     async def look(self, viewpoint: Viewpoint) -> Observation:
@@ -60,17 +61,16 @@ class SimulatedRobot:
         if not self._is_clear(way):
             return Observation(viewpoint.viewpoint_id, unreachable=True)
         self.travelled += float(np.hypot(*np.diff(way, axis=0).T).sum())
-        self.place = way[-1]
-        pose = pose_looking((way[-1][0], way[-1][1], EYE_HEIGHT), viewpoint.yaw, PITCH)
-        return Observation(viewpoint.viewpoint_id, await self._send(pose))
+        self.pose = pose_looking((way[-1][0], way[-1][1], EYE_HEIGHT), viewpoint.yaw, PITCH)
+        return Observation(viewpoint.viewpoint_id, await self._send())
 
-    async def _send(self, pose: F64) -> str:
-        """The frame id of what is seen from `pose`, durable."""
+    async def _send(self) -> str:
+        """The frame id of what is seen from where it stands, durable."""
         hello = self._hello("search")
         if self._next is None:  # where an earlier run of this robot stopped
             known = (await self._client.stream(hello, [])).resumed_after
             self._next = max(known, len(self._walk))
-        frames = outgoing(recorded_frames(self._room, [pose], first=self._next))
+        frames = outgoing(recorded_frames(self._room, [self.pose], first=self._next))
         report = await self._client.stream(hello, frames)
         if report.rejected:
             raise InvalidInput(f"the robot's frame was rejected: {report.rejected[0].reason}")
@@ -83,13 +83,11 @@ class SimulatedRobot:
 
     def _way_to(self, viewpoint: Viewpoint) -> F64:
         """Floor points `(N, 2)`: from where it stands, along the given path, straight where there is none."""
-        stops = [] if self.place is None else [self.place]
-        stops += [point[:2] for point in viewpoint.path]
-        return np.array([*stops, viewpoint.position[:2]], dtype=np.float64)
+        along = (point[:2] for point in viewpoint.path)
+        return np.array([self.pose[:2, 3], *along, viewpoint.position[:2]], dtype=np.float64)
 
     def _is_clear(self, way: F64) -> bool:
-        legs = zip(way, [*way[1:], way[-1]], strict=True)  # the last from the end to itself
-        return all(self._room.is_free(point, self._radius) for a, b in legs for point in _between(a, b))
+        return all(self._room.is_free(p, self._radius) for a, b in pairwise(way) for p in _between(a, b))
 
 
 def _between(a: F64, b: F64) -> F64:

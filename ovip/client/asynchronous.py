@@ -9,9 +9,10 @@ from types import TracebackType
 from typing import Literal
 
 from ovip.client.addresses import Addresses
-from ovip.client.streaming import FrameStream, Hello, OutgoingFrame, StreamEvent, StreamReport
+from ovip.client.streaming import PATIENCE_SECONDS, FrameStream, Hello, OutgoingFrame, StreamEvent, StreamReport
 from ovip.clients import MapperClient, PerceptionClient, RegionsClient, RetrievalClient, connect
-from ovip.errors import Corrupt, DeadlineExceeded
+from ovip.errors import Corrupt, DeadlineExceeded, Unavailable
+from ovip.keys import log_order
 from ovip.scene.answers import Answer, Observation, PerceptionStatus, Query, SearchEvent, Viewpoint
 from ovip.scene.types import Partition, SceneMap
 
@@ -62,19 +63,35 @@ class AsyncClient:
     ) -> SceneMap:
         """Waits until every durable frame of a scene is in its map, and returns the map.
 
+        Outlives services that go away and come back for up to `PATIENCE_SECONDS`, then Unavailable.
         DeadlineExceeded where `timeout_s` passes first.
         """
         deadline = time.monotonic() + timeout_s
+        last_heard = time.monotonic()
         while time.monotonic() < deadline:
-            status = await self.perception.status(scene)
-            if on_progress:
-                on_progress(status)
-            if status.frames_processed + status.frames_skipped >= status.frames_durable:
-                current = await self.mapper.get_map(scene)
-                if current.frames >= status.frames_processed and current.detections >= status.detections:
-                    return current
+            try:
+                current = await self._map_if_complete(scene, on_progress)
+                last_heard = time.monotonic()
+            except Unavailable:
+                if time.monotonic() - last_heard > PATIENCE_SECONDS:
+                    raise
+                current = None
+            if current is not None:
+                return current
             await asyncio.sleep(0.2)
         raise DeadlineExceeded(f"scene {scene}: not every frame was in the map after {timeout_s:.0f} s")
+
+    async def _map_if_complete(
+        self, scene: str, on_progress: Callable[[PerceptionStatus], None] | None
+    ) -> SceneMap | None:
+        status = await self.perception.status(scene)
+        if on_progress:
+            on_progress(status)
+        if status.frames_processed + status.frames_skipped < status.frames_durable:
+            return None
+        current = await self.mapper.get_map(scene)
+        complete = log_order(current.applied_log_id) >= log_order(status.newest_detections_id)
+        return current if complete else None
 
     async def find(self, query: Query, on_event: Callable[[SearchEvent], None] | None = None) -> Answer:
         """The answer of tiers 1 to 3, with the plan of tier 4."""

@@ -1,8 +1,9 @@
-"""Streaming frames to perception: with credits, without loss over reconnects, the newest kept where a robot must not wait."""
+"""Streaming frames to perception: with credits, no loss over reconnects, the newest kept where a robot cannot wait."""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import time
 from collections import OrderedDict
 from collections.abc import AsyncIterator, Callable, Iterable
@@ -18,7 +19,7 @@ from ovip.errors import InvalidInput, TooLarge, Unavailable
 from ovip.scene.types import F64, Box2, Intrinsics
 from ovip.v1 import perception_pb2, perception_pb2_grpc, types_pb2
 
-_PATIENCE_SECONDS = 60.0
+PATIENCE_SECONDS = 60.0
 _STATUS = {number: name.removeprefix("STATUS_").lower() for name, number in perception_pb2.Ack.Status.items()}
 
 
@@ -100,12 +101,12 @@ class FrameStream:
         hello: Hello,
         keep: Literal["all", "newest"] = "all",
         on_event: Callable[[StreamEvent], None] | None = None,
-        patience_s: float = _PATIENCE_SECONDS,
+        patience_s: float = PATIENCE_SECONDS,
     ) -> None:
         self._stub = perception_pb2_grpc.PerceptionServiceStub(channel)
         self._hello = _hello_message(hello)
         self._keep = keep
-        self._on_event = on_event or (lambda event: None)
+        self._on_event = on_event or (lambda _event: None)
         self._patience_s = patience_s
         self._waiting: OrderedDict[int, perception_pb2.StreamFramesRequest] = OrderedDict()
         self._in_flight: set[int] = set()
@@ -127,6 +128,7 @@ class FrameStream:
         feeder = asyncio.create_task(self._feed(frames, last if resume else 0))
         try:
             await self._until_done(feeder)
+            await feeder  # its error, if the last of the frames could not be read
         finally:
             feeder.cancel()
             await asyncio.gather(feeder, return_exceptions=True)
@@ -172,7 +174,8 @@ class FrameStream:
         return self._ended and not self._waiting
 
     async def _greet(self, call: Any) -> tuple[int, int]:
-        await call.write(perception_pb2.StreamFramesRequest(hello=self._hello))
+        with contextlib.suppress(asyncio.InvalidStateError):  # it ended already: its status says why
+            await call.write(perception_pb2.StreamFramesRequest(hello=self._hello))
         reply = await call.read()
         if reply is grpc.aio.EOF:
             raise await _status_of(call)
@@ -243,10 +246,10 @@ class FrameStream:
 
     async def _change(self) -> None:
         self._changed.clear()
-        try:
-            await asyncio.wait_for(self._changed.wait(), 0.5)
-        except TimeoutError:
-            pass
+        # not wait_for, which on Python 3.11 can lose a cancellation
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(0.5):
+                await self._changed.wait()
 
 
 async def _each(
@@ -268,7 +271,7 @@ async def _status_of(call: Any) -> grpc.aio.AioRpcError:
     return grpc.aio.AioRpcError(code, grpc.aio.Metadata(), trailing or grpc.aio.Metadata(), details)
 
 
-def _final_error(call: Any, error: Exception) -> grpc.aio.AioRpcError:
+def _final_error(_call: Any, error: Exception) -> grpc.aio.AioRpcError:
     if isinstance(error, grpc.aio.AioRpcError):
         return error
     return grpc.aio.AioRpcError(
@@ -322,7 +325,8 @@ def _frame_message(frame: OutgoingFrame) -> perception_pb2.StreamFramesRequest:
         message.frame.onboard.detections.extend(_detection_message(d) for d in frame.detections)
     if message.ByteSize() > MAX_MESSAGE_BYTES:
         raise TooLarge(
-            f"frame {frame.sequence}: expected at most {MAX_MESSAGE_BYTES // 2**20} MB a frame, got {message.ByteSize() / 2**20:.1f} MB"
+            f"frame {frame.sequence}: expected at most {MAX_MESSAGE_BYTES // 2**20} MB a frame, "
+            f"got {message.ByteSize() / 2**20:.1f} MB"
         )
     return message
 

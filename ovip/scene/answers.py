@@ -169,6 +169,7 @@ class PerceptionStatus:
     backend: str
     feature_space: str
     detections: int = 0
+    newest_detections_id: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,8 @@ def check_pose(pose: F64) -> F64:
     error = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
     if error > ROTATION_TOLERANCE or np.linalg.det(rotation) < 0:
         raise InvalidInput(
-            f"pose: expected a rigid world_from_camera (rotation orthonormal within {ROTATION_TOLERANCE}, right-handed), "
+            "pose: expected a rigid world_from_camera "
+            f"(rotation orthonormal within {ROTATION_TOLERANCE}, right-handed), "
             f"got a rotation off by {error:.3g} with determinant {np.linalg.det(rotation):.3g}"
         )
     if np.abs(pose[3] - [0, 0, 0, 1]).max() > 1e-6:

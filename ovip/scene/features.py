@@ -11,7 +11,8 @@ def normalize(features: F32) -> F32:
     """`(..., D)` features scaled to unit length; a zero vector stays zero."""
     wide = np.asarray(features, dtype=np.float64)  # squares of large or tiny numbers leave float32
     length = np.linalg.norm(wide, axis=-1, keepdims=True)
-    return np.divide(wide, length, out=np.zeros_like(wide), where=length > 0).astype(np.float32)
+    unit = np.divide(wide, length, out=np.zeros_like(wide), where=length > 0)
+    return np.asarray(unit, dtype=np.float32)
 
 
 def cosine(a: F32, b: F32) -> F32:

@@ -104,7 +104,8 @@ class EmbeddedServer:
                 if time.monotonic() > deadline:
                     self._lock.close()
                     raise Conflict(
-                        f"the store in {self.directory} is in use by another stack: stop it, or choose another OVIP_DATA_DIR"
+                        f"the store in {self.directory} is in use by another stack: "
+                        "stop it, or choose another OVIP_DATA_DIR"
                     ) from error
                 time.sleep(0.1)
 

@@ -337,8 +337,16 @@ class Store:
 
 @contextlib.asynccontextmanager
 async def _spoken() -> AsyncIterator[None]:
+    """Turns the client library's errors into ours, and never lets it swallow a cancellation (its wait_for can).
+
+    Only one that came meanwhile: what a cancelled task says on its way out still goes through.
+    """
+    task = asyncio.current_task()
+    cancelled_before = task.cancelling() if task else 0
     try:
         yield
+        if task and task.cancelling() > cancelled_before:
+            raise asyncio.CancelledError
     except (RedisConnectionError, RedisTimeoutError) as error:
         raise Unavailable(f"the store cannot be reached: {error}") from error
     except RedisError as error:

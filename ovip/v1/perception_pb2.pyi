@@ -210,7 +210,7 @@ class GetPerceptionStatusRequest(_message.Message):
     def __init__(self, scene: _Optional[str] = ...) -> None: ...
 
 class GetPerceptionStatusResponse(_message.Message):
-    __slots__ = ("frames_durable", "frames_processed", "frames_skipped", "vocabulary", "world_from_source", "backend", "feature_space", "detections")
+    __slots__ = ("frames_durable", "frames_processed", "frames_skipped", "vocabulary", "world_from_source", "backend", "feature_space", "detections", "newest_detections_id")
     FRAMES_DURABLE_FIELD_NUMBER: _ClassVar[int]
     FRAMES_PROCESSED_FIELD_NUMBER: _ClassVar[int]
     FRAMES_SKIPPED_FIELD_NUMBER: _ClassVar[int]
@@ -219,6 +219,7 @@ class GetPerceptionStatusResponse(_message.Message):
     BACKEND_FIELD_NUMBER: _ClassVar[int]
     FEATURE_SPACE_FIELD_NUMBER: _ClassVar[int]
     DETECTIONS_FIELD_NUMBER: _ClassVar[int]
+    NEWEST_DETECTIONS_ID_FIELD_NUMBER: _ClassVar[int]
     frames_durable: int
     frames_processed: int
     frames_skipped: int
@@ -227,4 +228,5 @@ class GetPerceptionStatusResponse(_message.Message):
     backend: str
     feature_space: str
     detections: int
-    def __init__(self, frames_durable: _Optional[int] = ..., frames_processed: _Optional[int] = ..., frames_skipped: _Optional[int] = ..., vocabulary: _Optional[_Iterable[str]] = ..., world_from_source: _Optional[_Iterable[float]] = ..., backend: _Optional[str] = ..., feature_space: _Optional[str] = ..., detections: _Optional[int] = ...) -> None: ...
+    newest_detections_id: str
+    def __init__(self, frames_durable: _Optional[int] = ..., frames_processed: _Optional[int] = ..., frames_skipped: _Optional[int] = ..., vocabulary: _Optional[_Iterable[str]] = ..., world_from_source: _Optional[_Iterable[float]] = ..., backend: _Optional[str] = ..., feature_space: _Optional[str] = ..., detections: _Optional[int] = ..., newest_detections_id: _Optional[str] = ...) -> None: ...

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ovip import keys
 from ovip.codec import decode_delta, decode_detection_batch, encode_delta
-from ovip.errors import InvalidInput, NotFound
+from ovip.errors import Corrupt, InvalidInput, NotFound
+from ovip.keys import check_name, log_order
 from ovip.scene.answers import SceneSummary
 from ovip.scene.types import F32, U8, MapDelta, MapObject, SceneMap
 from ovip.stages import holding, new_owner
@@ -128,7 +128,7 @@ class Mapper:
                     yield decode_delta(entry.fields["delta"])
 
     async def _step(self, lease: Lease, current: _Open, entry: Entry) -> None:
-        if _order(entry.id) <= _order(current.cursor):
+        if log_order(entry.id) <= log_order(current.cursor):
             return
         try:
             delta = await self._integrate(current, entry)
@@ -154,16 +154,27 @@ class Mapper:
         From memory, else the last snapshot, and the detections log since: what the writer does, read-only.
         """
         async with self._busy.setdefault(scene, asyncio.Lock()):
-            if scene not in self._open:
-                self._open[scene] = await self._from_snapshot(scene)
-            current = self._open[scene]
-            cursor = await self._store.cursor(scene, STAGE)
-            while _order(current.cursor) < _order(cursor):
-                for entry in await self._store.read(scene, DETECTIONS, current.cursor, _BATCHES_A_READ):
-                    if _order(entry.id) > _order(cursor):
-                        break
-                    await self._integrate(current, entry)
+            try:
+                current = await self._caught_up(scene)
+            except BaseException:
+                # interrupted (a caller who hung up, say), it may hold a batch that its cursor does not name
+                self._open.pop(scene, None)
+                raise
             yield current
+
+    async def _caught_up(self, scene: str) -> _Open:
+        if scene not in self._open:
+            self._open[scene] = await self._from_snapshot(scene)
+        current = self._open[scene]
+        cursor = await self._store.cursor(scene, STAGE)
+        while log_order(current.cursor) < log_order(cursor):
+            entries = await self._store.read(scene, DETECTIONS, current.cursor, _BATCHES_A_READ)
+            if not entries:
+                raise Corrupt(f"scene {scene}: the detections log ends before {cursor}, which the map has seen")
+            for entry in entries:
+                if log_order(entry.id) <= log_order(cursor):
+                    await self._integrate(current, entry)
+        return current
 
     async def _integrate(self, current: _Open, entry: Entry) -> MapDelta:
         """One batch into the map. Detections that cannot be the map's are left out, the same in every replay."""
@@ -187,24 +198,20 @@ class Mapper:
         return _Open(await asyncio.to_thread(ObjectMap.restore, data, self._params), pointer["cursor"])
 
     async def _check_known(self, scene: str) -> None:
-        keys.check_name(scene, "scene")
+        check_name(scene, "scene")
         scenes = await self._store.scenes()
         if scene not in scenes:
             raise NotFound(f"there is no scene {scene!r}; known: {', '.join(scenes) or 'none yet'}")
-
-
-def _order(log_id: str) -> tuple[int, int]:
-    first, _, second = log_id.partition("-")
-    return int(first), int(second)
 
 
 def _thinned(clouds: dict[str, tuple[F32, U8]], max_points: int) -> dict[str, tuple[F32, U8]]:
     total = sum(len(points) for points, _ in clouds.values())
     if not max_points or total <= max_points:
         return clouds
-    share = max_points / total
+    least = int(len(clouds) <= max_points)  # a point for each, where there are enough
+    share = (max_points - least * len(clouds)) / total
     thin = {}
     for object_id, (points, colors) in clouds.items():
-        pick = np.linspace(0, len(points) - 1, max(1, int(len(points) * share))).astype(np.int64)
+        pick = np.linspace(0, len(points) - 1, least + int(len(points) * share)).astype(np.int64)
         thin[object_id] = (points[pick], colors[pick])
     return thin

@@ -7,6 +7,7 @@ import contextlib
 from collections.abc import AsyncIterator
 
 from ovip.clients import VlmClient, connect
+from ovip.scene.words import normalize_word
 from ovip.serving import background, grpc_server, run_alone
 from ovip.stages import follow_scenes
 from ovip.store import Store
@@ -29,7 +30,7 @@ async def serve(settings: Settings, store: Store) -> AsyncIterator[int]:
     models = await asyncio.to_thread(open_models, settings, VlmClient(gateway))
     lift = LiftParams(min_confidence=settings.min_confidence, max_depth=settings.max_depth)
     detecting = Detecting(models, lift)
-    extra = frozenset(word.strip() for word in settings.gate_blacklist.split(",") if word.strip())
+    extra = frozenset(filter(None, map(normalize_word, settings.gate_blacklist.split(","))))
     worker = PerceptionWorker(store, detecting, GateParams(settings.gate_n_min, DEFAULT_BLACKLIST | extra))
     servicer = PerceptionServicer(Perception(store, detecting, settings))
     name = perception_pb2.DESCRIPTOR.services_by_name["PerceptionService"].full_name

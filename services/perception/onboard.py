@@ -93,7 +93,8 @@ def mask_of(detection: OnboardDetection, k: Intrinsics) -> Bools | None:
     x, y = detection.mask.x, detection.mask.y
     if x + raw.shape[1] > k.width or y + raw.shape[0] > k.height:
         raise InvalidInput(
-            f"mask of {detection.label!r}: {raw.shape[1]}x{raw.shape[0]} at ({x}, {y}) leaves the image of {k.width}x{k.height}"
+            f"mask of {detection.label!r}: {raw.shape[1]}x{raw.shape[0]} at ({x}, {y}) "
+            f"leaves the image of {k.width}x{k.height}"
         )
     mask = np.zeros((k.height, k.width), dtype=bool)
     mask[y : y + raw.shape[0], x : x + raw.shape[1]] = raw

@@ -134,13 +134,13 @@ class PerceptionServicer(perception_pb2_grpc.PerceptionServiceServicer):
     async def _take_in(self, session: Session, frame: pb.FrameUpload, outbox: _Outbox) -> None:
         try:
             checked = await self._perception.check(session, _upload_value(frame), _onboard_value(frame))
+            await self._acknowledge(session, outbox, pb.Ack.STATUS_RECEIVED, frame.sequence)
+            durable = await self._perception.keep(session, checked)
         except InvalidInput as error:
             await self._acknowledge(
                 session, outbox, pb.Ack.STATUS_REJECTED, frame.sequence, reason=str(error)
             )
             return
-        await self._acknowledge(session, outbox, pb.Ack.STATUS_RECEIVED, frame.sequence)
-        durable = await self._perception.keep(session, checked)
         await self._acknowledge(
             session,
             outbox,

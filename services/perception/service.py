@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import dataclasses
 import json
+import re
 from collections.abc import AsyncIterator, Sequence
 from dataclasses import dataclass
 
@@ -21,7 +22,15 @@ from ovip.telemetry import get_logger
 from ovip.wire import decode_depth_units, decode_rgb
 from services.perception.config import Settings
 from services.perception.detecting import Detecting
-from services.perception.history import FRAMES, STAGE, FrameHistory, StoredFrame, Upload, entry_fields
+from services.perception.history import (
+    DETECTIONS,
+    FRAMES,
+    STAGE,
+    FrameHistory,
+    StoredFrame,
+    Upload,
+    entry_fields,
+)
 from services.perception.onboard import OnboardDetection, check_onboard, decode_onboard, encode_onboard
 
 MOST_GROUNDED_FRAMES = 64
@@ -88,13 +97,19 @@ class Perception:
         return await asyncio.to_thread(self._check, session, upload, onboard)
 
     async def keep(self, session: Session, upload: Upload) -> Durable:
-        """Syncs a checked frame's images and appends it to the log; again for the same sequence changes nothing."""
+        """Syncs a checked frame's images and appends it to the log; again for the same sequence changes nothing.
+
+        InvalidInput for a sequence that the session has passed over: the frame is not kept.
+        """
         bulk = (upload.rgb, upload.depth, upload.onboard)
         refs = await asyncio.gather(*(self._store.blobs.put(data) for data in bulk if data))
         frame_id = session.frame_id(upload.sequence)
         onboard_ref = refs[2] if upload.onboard else ""
         fields = entry_fields(frame_id, upload, session.intrinsics, refs[0], refs[1], onboard_ref)
         taken = await self._store.ingest(session.scene, session.name, upload.sequence, frame_id, fields)
+        if not taken.log_id:
+            last = await self._store.last_sequence(session.scene, session.name)
+            raise InvalidInput(f"sequence: expected above {last}, the session's last, got {upload.sequence}")
         return Durable(frame_id, taken.duplicate)
 
     async def credits(self, scene: str) -> int:
@@ -188,6 +203,7 @@ class Perception:
         await self._check_known(scene)
         processed, skipped, detections = await self._counts(scene)
         values = await self._store.values(scene, STAGE, ["vocabulary"])
+        newest = await self._store.newest(scene, DETECTIONS)
         source = await self._store.load_document(scene, "scene", "world_from_source")
         return PerceptionStatus(
             frames_durable=await self._store.length(scene, FRAMES),
@@ -198,6 +214,7 @@ class Perception:
             backend=self._detecting.models.name,
             feature_space=self.feature_space,
             detections=detections,
+            newest_detections_id=newest[0].id if newest else "",
         )
 
     @property
@@ -259,5 +276,4 @@ class Perception:
 
 
 def _is_log_id(text: str) -> bool:
-    first, dash, second = text.partition("-")
-    return bool(dash) and first.isdigit() and second.isdigit() and len(text) < 42
+    return re.fullmatch(r"[0-9]{1,15}-[0-9]{1,15}", text) is not None

@@ -19,9 +19,7 @@ class Settings(KernelSettings):
     regions_quiet_s: float = Field(
         2.0, ge=0, description="seconds without a change after which any change is enough"
     )
-    regions_min_interval_s: float = Field(
-        5.0, ge=0, description="seconds between partitions while changes go on"
-    )
+    regions_min_interval_s: float = Field(5.0, ge=0, description="least seconds between two partitions")
     regions_checkpoint_frames: int = Field(
         64, ge=1, description="frames of floor evidence between checkpoints"
     )

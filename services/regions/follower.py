@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ovip.codec import decode_detection_batch
-from ovip.errors import Corrupt, InvalidInput, LeaseLost, NotFound, OvipError
+from ovip.errors import Corrupt, InvalidInput, LeaseLost, NotConfigured, NotFound, OvipError
 from ovip.scene.types import DetectionBatch, SceneMap
 from ovip.stages import holding, new_owner
 from ovip.store import Entry, Lease, Store
@@ -223,7 +223,8 @@ class RegionsFollower:
                 return replace(grouping, fallbacks=(*reasons, *grouping.fallbacks))
             except OvipError as error:
                 FALLBACKS.inc()
-                reasons.append(f"grouping: function table, {error}")
+                log.info("grouping_fell_back", slug=error.slug, reason=str(error))
+                reasons.append(f"grouping: function table, {_why(error)}")
         grouping = await last.group(floor)
         return replace(grouping, fallbacks=(*reasons, *grouping.fallbacks))
 
@@ -244,6 +245,10 @@ def placed(scene_map: SceneMap) -> PlacedObjects:
         labels=tuple(o.label for o in objects),
         centres=np.array([o.centroid for o in objects], dtype=np.float64).reshape(-1, 3),
     )
+
+
+def _why(error: OvipError) -> str:
+    return "no VLM configured" if isinstance(error, NotConfigured) else f"VLM {error.slug}"
 
 
 def _leave_where_cancelled() -> None:

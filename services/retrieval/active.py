@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ovip.scene.answers import Coverage, FrameRecord, TierResult, Viewpoint
-from ovip.scene.grid import FloorGrid, shortest_path
+from ovip.scene.grid import FloorGrid
 from ovip.scene.types import F64, Intrinsics
+from ovip.scene.walking import shortest_path
 from services.retrieval.case import Case, Ruling, choice
 from services.retrieval.domain.coverage import CoverageParams, View, assess
 from services.retrieval.domain.goals import NO_PATH, floor_of
@@ -190,9 +191,7 @@ def still_needs(case: Case, search: Search, ruling: Ruling) -> str:
     if not search.waypoints or case.unseeable:
         return needs(case, search)
     if ruling.result is TierResult.EXHAUSTED and search.visited:
-        return (
-            f"a budget for the other {search.planned - search.visited - len(search.unreachable)} viewpoints"
-        )
+        return f"a budget for the other {search.remaining} viewpoints"
     if ruling.doubtful:
         return f"a better look, or {choice(ruling.doubtful)}"
     if search.visited and search.blind == search.visited:

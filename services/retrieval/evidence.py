@@ -17,6 +17,7 @@ from services.retrieval.ports import Frames, Grounder, Maps, Regions
 NO_PARTITION = Partition(map_version=0, revision=0)
 _MOST_WORDS = 20_000
 _MOST_SCENES = 16
+_WORDS_A_CALL = 128
 _TAGS_PROBED = 64
 
 
@@ -43,8 +44,9 @@ class TextSpace:
             self._known.pop(space)
         known = self._known.setdefault(space, {})
         missing = sorted(set(words) - known.keys() - {""})
-        if missing:
-            known.update(zip(missing, await self._grounder.embed_text(missing), strict=True))
+        for at in range(0, len(missing), _WORDS_A_CALL):
+            batch = missing[at : at + _WORDS_A_CALL]
+            known.update(zip(batch, await self._grounder.embed_text(batch), strict=True))
         return TextFeatures(space, known)
 
 

@@ -12,12 +12,18 @@ import numpy as np
 from ovip.errors import NotFound, Unavailable
 from ovip.scene.types import F32, F64, Box2, Region
 from services.retrieval.domain.attributes import Subject, can_judge, judge_attributes
-from services.retrieval.domain.confirm import confirm_by_features, distractors, target_words
-from services.retrieval.domain.judgement import Judgement, combine
-from services.retrieval.domain.names import NameParams, match_names
+from services.retrieval.domain.confirm import (
+    ConfirmParams,
+    confirm_by_features,
+    distractors,
+    target_words,
+    without_label,
+)
+from services.retrieval.domain.judgement import Judgement, Verdict, combine
+from services.retrieval.domain.names import NameParams, TextFeatures, match_names
 from services.retrieval.domain.places import matching_regions
 from services.retrieval.domain.priors import Priors, table_priors
-from services.retrieval.domain.query import ANYTHING, Attribute, Target
+from services.retrieval.domain.query import Attribute, Target
 from services.retrieval.domain.questions import (
     ask_about_crops,
     ask_for_priors,
@@ -38,17 +44,17 @@ _PURPOSE_LIKENESS = 0.45  # MiniLM: "sit on" is .54 from chair, "charge my phone
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """A candidate as it is judged: where it is best seen, its colour, box and features (several views, or
-    one).
+    """A candidate as it is judged: where it is best seen, its colour, box and features.
 
-    attributes: what this candidate's name leaves open. mean_color: `(3,)` RGB; box: `(6,)` metres.
+    mean_color: `(3,)` RGB; box: `(6,)` metres. views: a feature `(D,)` and the detector's label each.
+    attributes: what this candidate's name leaves open.
     """
 
     frame_id: str
     box2: Box2 | None
     mean_color: F64
     box: F64
-    views: tuple[F32, ...]
+    views: tuple[tuple[F32, str], ...]
     attributes: tuple[Attribute, ...]
 
 
@@ -171,29 +177,25 @@ class Judge:
 
     async def _by_features(self, target: Target, shots: Sequence[Shot]) -> tuple[Judgement, ...]:
         """Encoder similarity for the kind, colour and box for the attributes."""
-        others = distractors(target.noun)
-        words = target_words(target.noun)
-        texts = await self._evidence.texts([*words, *others])
         attributes = await self._by_colour_and_box(target, shots)
-        if texts is None or target.noun == ANYTHING:
-            return attributes
+        words, others = target_words(target.noun), distractors(target.noun)
+        texts = await self._evidence.texts([*words, *others, *_labels(shots)])
+        if texts is None:
+            unseen = Judgement(Verdict.UNSURE, 0.5, "no text features to confirm it by", (target.noun,))
+            return tuple(combine([unseen, attribute]) for attribute in attributes)
         own = np.stack([texts.features[word] for word in words])
         rivals = np.stack([texts.features[word] for word in others])
-        kinds = [confirm_by_features(target.noun, shot.views, own, rivals) for shot in shots]
-        return tuple(
-            combine([kind, attribute]) if shot.attributes else kind
-            for kind, attribute, shot in zip(kinds, attributes, shots, strict=True)
-        )
+        kinds = [confirm_by_features(target.noun, _images(shot, texts), own, rivals) for shot in shots]
+        return tuple(combine([kind, attribute]) for kind, attribute in zip(kinds, attributes, strict=True))
 
     async def _likeness(self, target: Target, shots: Sequence[Shot]) -> list[float]:
-        """Cosine of each shot's feature with the phrase: ranks what cannot be judged; 0 where unknown."""
+        """Cosine of each shot's image with the phrase: ranks what cannot be judged; 0 where unknown."""
         if all(can_judge(shot.attributes) for shot in shots):
             return [0.0] * len(shots)
-        texts = await self._evidence.texts([target.phrase])
+        texts = await self._evidence.texts([target.phrase, *_labels(shots)])
         if texts is None:
             return [0.0] * len(shots)
-        phrase = texts.features[target.phrase]
-        return [_mean_cosine(shot.views, phrase) for shot in shots]
+        return [_mean_cosine(_images(shot, texts), texts.features[target.phrase]) for shot in shots]
 
     async def _table_priors(self, target: Target, regions: Sequence[Region]) -> Priors:
         functions = {region.region_id: region.function or region.display_name for region in regions}
@@ -216,6 +218,21 @@ class Judge:
 
 def _both(seen: Sequence[Judgement], relations: Sequence[Judgement]) -> tuple[Judgement, ...]:
     return tuple(combine([a, b]) if b.why else a for a, b in zip(seen, relations, strict=True))
+
+
+def _labels(shots: Sequence[Shot]) -> list[str]:
+    return [label for shot in shots for _, label in shot.views]
+
+
+def _images(shot: Shot, texts: TextFeatures) -> list[F32]:
+    """The views' features without what the detector's label put into them."""
+    share = ConfirmParams().share_in(texts.space)
+    return [
+        without_label(view, texts.features[label], share)
+        if view.shape == texts.features[label].shape
+        else view
+        for view, label in shot.views
+    ]
 
 
 def _mean_cosine(views: Sequence[F32], phrase: F32) -> float:

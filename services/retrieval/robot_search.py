@@ -163,7 +163,7 @@ class RobotSearch:
         if found:
             why = f"{found[0].why}; at viewpoint {search.visited} of {search.planned}"
             return Ruling(TierResult.FOUND, why, found, doubtful), Outcome.FOUND
-        if search.visited >= search.budget:
+        if search.visited >= search.budget and search.remaining:
             why = f"the budget of {search.budget} viewpoints is used up; {search.planned} are planned"
             return Ruling(TierResult.EXHAUSTED, why, (), doubtful), Outcome.UNRESOLVED
         return None, Outcome.UNRESOLVED

@@ -260,17 +260,24 @@ def _named(case: Case, detections: Sequence[Detection]) -> list[Detection]:
 def _object_shot(case: Case, match: ObjectMatch) -> Shot:
     item: MapObject = match.object
     attributes = unsettled(case.target, match)
-    return Shot(item.best_frame_id, item.best_box2, item.mean_color, item.box, (item.feature,), attributes)
+    return Shot(
+        item.best_frame_id,
+        item.best_box2,
+        item.mean_color,
+        item.box,
+        ((item.feature, item.label),),
+        attributes,
+    )
 
 
 def _sighting_shot(case: Case, s: Sighting) -> Shot:
-    return Shot(s.frame_id, s.box2, s.mean_color, s.box, (s.feature,), case.target.attributes)
+    return Shot(s.frame_id, s.box2, s.mean_color, s.box, ((s.feature, s.label),), case.target.attributes)
 
 
 def _survivor_shot(case: Case, survivor: Survivor) -> Shot:
     best = survivor.sightings[0]
     color = np.mean([s.mean_color for s in survivor.sightings], axis=0)
-    views = tuple(s.feature for s in survivor.sightings)
+    views = tuple((s.feature, s.label) for s in survivor.sightings)
     return Shot(best.frame_id, best.box2, color, survivor.box, views, case.target.attributes)
 
 

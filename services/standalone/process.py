@@ -19,8 +19,10 @@ _START_SECONDS = 120.0
 _STOP_SECONDS = 30.0
 
 
-def start_stack(data_dir: Path, free_ports: bool, log_level: str = "warning") -> subprocess.Popen[str]:
-    """A stack in a process of its own, which ends when this one does."""
+def start_stack(
+    data_dir: Path, free_ports: bool, log_level: str = "warning", module: str = "services.standalone"
+) -> subprocess.Popen[str]:
+    """A stack in a process of its own, which ends when this one does. module: what `python -m` runs."""
     environment = {
         **os.environ,
         "OVIP_DATA_DIR": str(data_dir.absolute()),
@@ -28,7 +30,7 @@ def start_stack(data_dir: Path, free_ports: bool, log_level: str = "warning") ->
         "OVIP_LOG_LEVEL": os.environ.get("OVIP_LOG_LEVEL", log_level),
     }
     return subprocess.Popen(
-        [sys.executable, "-m", "services.standalone"],
+        [sys.executable, "-m", module],
         stdout=subprocess.PIPE,
         text=True,
         env=environment,

@@ -42,7 +42,17 @@ def deployed_apart(cli: Cli, folder: Path) -> Iterator[dict[str, str]]:
         **{f"OVIP_{name.upper()}_PORT": str(ports[name]) for name in SERVICES},
         **{f"OVIP_{name.upper()}_ADDRESS": f"127.0.0.1:{ports[name]}" for name in SERVICES},
     }
-    store = [server_binary(), "--port", str(ports["store"]), "--bind", "127.0.0.1", "--dir", str(folder), "--save", ""]
+    store = [
+        server_binary(),
+        "--port",
+        str(ports["store"]),
+        "--bind",
+        "127.0.0.1",
+        "--dir",
+        str(folder),
+        "--save",
+        "",
+    ]
     processes = [subprocess.Popen(store, stdout=subprocess.DEVNULL)]
     try:
         for name in SERVICES:
@@ -67,7 +77,11 @@ def wait_until_well(targets: list[str]) -> None:
 
 def essence(answer: Any) -> Any:
     """An answer without what differs from run to run: times and the search's id."""
-    kept = {name: value for name, value in answer.items() if name not in {"search_id", "tiers", "regions_revision"}}
+    kept = {
+        name: value
+        for name, value in answer.items()
+        if name not in {"search_id", "tiers", "regions_revision"}
+    }
     return {**kept, "tiers": [(t["tier"], t["result"]) for t in answer["tiers"]]}
 
 

@@ -27,7 +27,9 @@ def mapped(cli: Cli, kitchen: Path, tmp_path_factory: pytest.TempPathFactory) ->
 
 
 def find(cli: Cli, data: Path, text: str) -> Any:
-    return cli.json("find", text, "--scene", "kitchen", "--frame", "source", "--standalone", "--data-dir", data)
+    return cli.json(
+        "find", text, "--scene", "kitchen", "--frame", "source", "--standalone", "--data-dir", data
+    )
 
 
 def distance(answer: Any, truth: tuple[float, float, float]) -> float:

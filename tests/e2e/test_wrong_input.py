@@ -88,6 +88,10 @@ def test_a_wrong_setting_is_named(cli: Cli, tmp_path: Path) -> None:
 def test_one_service_alone_without_models_says_how_to_get_them(cli: Cli, tmp_path: Path) -> None:
     environment = {**cli.environment, "OVIP_MODELS_DIR": str(tmp_path), "OVIP_DATA_DIR": str(tmp_path / "d")}
     done = subprocess.run(
-        [sys.executable, "-m", "services.perception"], env=environment, capture_output=True, text=True, timeout=60
+        [sys.executable, "-m", "services.perception"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
     )
     assert "ovip models pull embedded" in refused(done)

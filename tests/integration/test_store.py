@@ -24,7 +24,17 @@ SCENE = "kitchen"
 def server_at(socket: Path) -> Iterator[str]:
     """A server that is not ours, as one that OVIP_REDIS_URL names; yields its URL."""
     process = subprocess.Popen(
-        [server_binary(), "--port", "0", "--unixsocket", str(socket), "--save", "", "--dir", str(socket.parent)],
+        [
+            server_binary(),
+            "--port",
+            "0",
+            "--unixsocket",
+            str(socket),
+            "--save",
+            "",
+            "--dir",
+            str(socket.parent),
+        ],
         stdout=subprocess.DEVNULL,
     )
     try:
@@ -255,7 +265,10 @@ async def test_a_step_appends_puts_and_moves_the_cursor_together(store: Store) -
     assert lease is not None
 
     done = await store.commit(
-        lease, "5-0", [Append("map", {"v": 1}), Append("map", {"v": b"\x00\xff"}), Append("log", {"x": "y"})], {"version": 7}
+        lease,
+        "5-0",
+        [Append("map", {"v": 1}), Append("map", {"v": b"\x00\xff"}), Append("log", {"x": "y"})],
+        {"version": 7},
     )
 
     assert done.applied
@@ -322,7 +335,9 @@ async def test_a_commit_that_the_server_cannot_carry_out_leaves_nothing_behind(s
     await store._client.set("{default/kitchen}:stream:broken", "not a stream")
 
     with pytest.raises(Unavailable, match="the store refused"):
-        await store.commit(lease, "5-0", [Append("map", {"v": 1}), Append("broken", {"v": 1})], {"version": 1})
+        await store.commit(
+            lease, "5-0", [Append("map", {"v": 1}), Append("broken", {"v": 1})], {"version": 1}
+        )
 
     assert await store.length(SCENE, "map") == 0
     assert await store.values(SCENE, "mapper", ["version"]) == {}
@@ -459,6 +474,46 @@ async def test_blobs_lie_beside_the_store(store: Store) -> None:
     assert await store.blobs.get(ref) == b"bytes"
     with pytest.raises(NotFound, match=f"blob {'0' * 64}"):
         await store.blobs.get("0" * 64)
+
+
+# Cancellation
+
+
+async def test_a_cancelled_task_ends_whatever_it_was_asking_the_store(store: Store) -> None:
+    """On Python 3.11 the client's wait_for loses a cancellation that comes as a write ends."""
+
+    async def ask_for_ever() -> None:
+        while True:
+            await store.scenes()
+
+    for steps in range(40):
+        task = asyncio.create_task(ask_for_ever())
+        for _ in range(steps):
+            await asyncio.sleep(0)
+        task.cancel()
+        done, _ = await asyncio.wait({task}, timeout=2)
+        assert done, f"cancelled after {steps} steps, still running"
+        assert task.cancelled()
+
+
+async def test_a_cancelled_task_may_still_speak_to_the_store_on_its_way_out(store: Store) -> None:
+    begun = asyncio.Event()
+
+    async def tidy_up() -> None:
+        try:
+            begun.set()
+            await asyncio.Event().wait()
+        finally:
+            await store.add_scene("first")
+            await store.add_scene("second")
+
+    task = asyncio.create_task(tidy_up())
+    await begun.wait()
+    task.cancel()
+    await asyncio.wait({task}, timeout=2)
+
+    assert task.cancelled()
+    assert await store.scenes() == ["first", "second"]
 
 
 # A server that cannot be reached

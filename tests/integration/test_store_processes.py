@@ -196,7 +196,7 @@ async def test_a_server_that_does_not_start_says_why(tmp_path: Path) -> None:
     (tmp_path / "store" / "appendonlydir").mkdir(parents=True)
     (tmp_path / "store" / "appendonlydir" / "appendonly.aof.manifest").write_text("nonsense")
 
-    with pytest.raises(Unavailable, match="the embedded store (.|\n)*says: (.|\n)*manifest"):
+    with pytest.raises(Unavailable, match=r"the embedded store (.|\n)*says: (.|\n)*manifest"):
         await Store.connect(kernel_settings(tmp_path))
 
 

@@ -29,8 +29,7 @@ async def listening(app: FastAPI, host: str, port: int, stopping: asyncio.Event)
     server = _Server(config)
     serving = asyncio.create_task(server.serve(sockets=[bound]), name="api")
     try:
-        while not server.started and not serving.done():
-            await asyncio.sleep(0.005)
+        await server.standing.wait()
         yield int(bound.getsockname()[1])
     finally:
         stopping.set()
@@ -40,7 +39,17 @@ async def listening(app: FastAPI, host: str, port: int, stopping: asyncio.Event)
 
 
 class _Server(uvicorn.Server):
-    """Leaves signals to the process it runs in."""
+    """Leaves signals to the process it runs in, and says when it stands."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.standing = asyncio.Event()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        try:
+            await super().startup(sockets)
+        finally:
+            self.standing.set()
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:

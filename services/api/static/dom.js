@@ -26,29 +26,26 @@ function fill(node, props, children) {
   return node;
 }
 
-/** At most one call of `work` at a time, `wait` ms after the last request for it; a request meanwhile runs it again. */
-export function settled(work, wait) {
-  let timer = 0;
+/**
+ * Runs `work` within `wait` ms of being asked, however often it is asked meanwhile, and never twice at once; what is asked
+ * while it runs makes it run again. So a steady stream of requests gives a steady beat and the last one is never lost.
+ */
+export function paced(work, wait) {
+  let pending = false;
   let running = false;
-  let again = false;
-  const run = async () => {
-    if (running) {
-      again = true;
-      return;
-    }
+  const beat = () => setTimeout(async () => {
+    pending = false;
     running = true;
     try {
       await work();
     } finally {
       running = false;
-      if (again) {
-        again = false;
-        timer = setTimeout(run, wait);
-      }
+      if (pending) beat();
     }
-  };
+  }, wait);
   return () => {
-    clearTimeout(timer);
-    timer = setTimeout(run, wait);
+    if (pending) return;
+    pending = true;
+    if (!running) beat();
   };
 }

@@ -2,7 +2,7 @@
 
 import { adoptKey, ask, follow, getBytes, getImage, getJson, link, Problem, setKey } from "./api.js";
 import { AnswerPanel } from "./answer.js";
-import { byId, el, settled } from "./dom.js";
+import { byId, el, paced } from "./dom.js";
 import { extents, metres, plural, squareMetres } from "./format.js";
 import { paintCells, Plan } from "./plan.js";
 import { Space } from "./space.js";
@@ -12,9 +12,10 @@ const MOST_FRAMES = 4000;
 const MOST_POINTS = 150_000;
 const SUGGESTED = 8;
 const WIDE = 1.6;
+const SCENES_EVERY_MS = 5000;
 
 const state = {
-  scene: null, version: 0, objects: new Map(), regions: [], floors: [], floor: 0, regionOf: new Map(), frames: [], framesEnd: null,
+  scene: null, wanted: null, version: 0, objects: new Map(), regions: [], floors: [], floor: 0, regionOf: new Map(), frames: [], framesEnd: null,
   regionsRevision: -1, stop: () => {}, asking: null,
 };
 
@@ -25,10 +26,10 @@ const answers = new AnswerPanel(byId("panel-answer"), {
   pick: (id, candidate) => select(id, candidate),
 });
 
-const refreshMap = settled(() => attempt(loadObjects), 350);
-const refreshRegions = settled(() => attempt(loadRegions), 350);
-const refreshPoints = settled(() => attempt(loadPoints), 1500);
-const refreshFrames = settled(() => attempt(loadFrames), 700);
+const refreshMap = paced(() => attempt(loadObjects), 350);
+const refreshRegions = paced(() => attempt(loadRegions), 350);
+const refreshPoints = paced(() => attempt(loadPoints), 1500);
+const refreshFrames = paced(() => attempt(loadFrames), 700);
 
 adoptKey();
 wire();
@@ -39,9 +40,8 @@ async function start() {
   const { scenes } = await getJson("v1/scenes");
   byId("key-dialog").close();
   showSystem();
-  const picker = byId("scene");
-  picker.replaceChildren(...scenes.map((scene) => el("option", { value: scene.scene, text: scene.scene })));
-  picker.disabled = !scenes.length;
+  const names = scenes.map((scene) => scene.scene);
+  listScenes(names);
   byId("find").disabled = byId("question").disabled = byId("export").hidden = !scenes.length;
   if (!scenes.length) {
     notice("No scene yet. Stream a recording into the stack: ovip replay PATH --layout 7scenes --scene kitchen. This page looks again by itself.", "hint");
@@ -50,25 +50,39 @@ async function start() {
     return;
   }
   notice("");
-  const wanted = new URL(location.href).searchParams.get("scene");
-  picker.value = scenes.some((scene) => scene.scene === wanted) ? wanted : scenes[0].scene;
-  await open(picker.value);
+  state.wanted = new URL(location.href).searchParams.get("scene");
+  await open(names.includes(state.wanted) ? state.wanted : names[0]);
+}
+
+/** New scenes join the list by themselves; one that the address named before it existed is opened when it comes. */
+async function lookForScenes() {
+  if (!state.scene || document.hidden) return;
+  const names = (await getJson("v1/scenes")).scenes.map((scene) => scene.scene);
+  listScenes(names);
+  if (state.wanted && state.wanted !== state.scene && names.includes(state.wanted)) await open(state.wanted);
+}
+
+function listScenes(names) {
+  const picker = byId("scene");
+  picker.disabled = !names.length;
+  if (names.join() === [...picker.options].map((option) => option.value).join()) return;
+  picker.replaceChildren(...names.map((name) => el("option", { value: name, text: name })));
+  if (state.scene) picker.value = state.scene;
 }
 
 async function open(scene) {
   state.stop();
   state.asking?.abort();
+  byId("scene").value = scene;
   Object.assign(state, { scene, version: 0, objects: new Map(), regions: [], floors: [], floor: 0, frames: [], framesEnd: null, regionsRevision: -1 });
   plan.moved = space.moved = false;
   for (const view of [plan, space]) view.setAnswer(null);
   select(null);
   answers.idle();
-  const address = new URL(location.href);
-  address.searchParams.set("scene", scene);
-  history.replaceState(null, "", address);
   showExports();
   await Promise.all([loadObjects(), loadRegions(), loadFrames()]);
   await loadPoints();
+  if (scene !== state.scene) return;
   state.stop = follow(scene, state.version, {
     state: (connection) => live(connection),
     map: (delta) => {
@@ -342,6 +356,7 @@ function live(connection) {
 async function attempt(work) {
   try {
     await work();
+    if (byId("notice").dataset.kind === "problem" && byId("live").dataset.state === "on") notice("");
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
     if (problem.status === 401) askForKey();
@@ -369,7 +384,14 @@ function wire() {
     const text = byId("question").value.trim();
     if (text && state.scene) find(text);
   });
-  byId("scene").addEventListener("change", () => attempt(() => open(byId("scene").value)));
+  byId("scene").addEventListener("change", () => {
+    state.wanted = byId("scene").value;
+    const address = new URL(location.href);
+    address.searchParams.set("scene", state.wanted);
+    history.replaceState(null, "", address);
+    attempt(() => open(state.wanted));
+  });
+  setInterval(() => attempt(lookForScenes), SCENES_EVERY_MS);
   byId("floor").addEventListener("change", () => changeFloor(Number(byId("floor").value)));
   byId("paint").addEventListener("change", () => space.setPaint(byId("paint").value));
   byId("filter").addEventListener("input", () => showObjects());

@@ -98,7 +98,7 @@ class ObjectMap:
         aliases = self._merge_duplicates(created | updated)
         removed: list[str] = []
         if self._batches % self.params.upkeep.every == 0:
-            self._denoise()
+            updated |= self._denoise()
             aliases |= self._merge_duplicates(self._dirty)
             removed = self._forget()
             self._dirty.clear()
@@ -197,14 +197,22 @@ class ObjectMap:
         return restored
 
     def _check(self, batch: DetectionBatch) -> None:
-        for detection in batch.detections:
-            if self._dimension is None:
-                self._dimension = len(detection.feature)
-            if len(detection.feature) != self._dimension:
+        dimension = self._dimension
+        for d in batch.detections:
+            dimension = len(d.feature) if dimension is None else dimension
+            if len(d.feature) != dimension or dimension == 0:
                 raise InvalidInput(
-                    f"detection {detection.detection_id}: expected a feature of {self._dimension} numbers like the map's, "
-                    f"got {len(detection.feature)}"
+                    f"detection {d.detection_id}: "
+                    f"expected a feature of {dimension or 'some'} numbers like the map's, got {len(d.feature)}"
                 )
+            if not all(np.isfinite(array).all() for array in (d.feature, d.box, d.points)):
+                raise InvalidInput(f"detection {d.detection_id}: expected finite features, box and points")
+            if not len(d.points) or len(d.points) != len(d.colors):
+                raise InvalidInput(
+                    f"detection {d.detection_id}: expected points with a colour each, "
+                    f"got {len(d.points)} points and {len(d.colors)} colours"
+                )
+        self._dimension = dimension
 
     def _fuse_batch(self, batch: DetectionBatch) -> tuple[set[str], set[str]]:
         objects = list(self._objects.values())
@@ -277,11 +285,16 @@ class ObjectMap:
         o.refresh()
         return o.object_id
 
-    def _denoise(self) -> None:
+    def _denoise(self) -> set[str]:
+        """Clears clutter off changed objects; returns the ids of those that lost voxels."""
+        thinner = set()
         for object_id in sorted(self._dirty & self._objects.keys()):
             o = self._objects[object_id]
-            o.cloud = denoised(o.cloud, self.params.upkeep)
-            o.box = o.cloud.box
+            cloud = denoised(o.cloud, self.params.upkeep)
+            if len(cloud) < len(o.cloud):
+                thinner.add(object_id)
+                o.cloud, o.box = cloud, cloud.box
+        return thinner
 
     def _merge_duplicates(self, changed: set[str]) -> dict[str, str]:
         """Changed objects, oldest first, join those that are the same thing; the one seen in more frames stays."""
@@ -294,6 +307,7 @@ class ObjectMap:
                 keep, gone = sorted((object_id, twin), key=self._seniority)
                 self._absorb(self._objects[keep], self._objects.pop(gone))
                 aliases[gone] = keep
+                self._dirty.add(keep)
                 object_id = keep
         self.aliases.update(aliases)
         return aliases

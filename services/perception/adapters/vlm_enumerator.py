@@ -32,7 +32,7 @@ log = get_logger("perception")
 
 
 class VlmEnumerator:
-    """Asks the VLM; where none answers, the fallback names what it can (SPEC 6), or the error goes on if there is none."""
+    """Asks the VLM; where none answers, the fallback names what it can (SPEC 6), or, without one, the error goes on."""
 
     def __init__(self, vlm: VlmClient, fallback: Enumerator | None) -> None:
         self._vlm = vlm

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,10 +22,18 @@ class ConfirmParams:
     mean feature of several views, 121 words: true ones ranked 0 (chair), 0 (laptop), 1 (cup), 1 (television),
     2 (table), 3 (phone), 20 (book); false ones 65 (refrigerator), 95 (umbrella), 120 (stop sign). One view
     alone is much weaker.
+
+    label_share: the weight of the detector's own label in the features of a space (by a piece of its name). It
+    is taken out first, else every label would confirm itself.
     """
 
     accept: float = 0.2
     reject: float = 0.4
+    label_share: Mapping[str, float] = field(default_factory=lambda: {"conse": 0.75})
+
+    def share_in(self, text_space: str) -> float:
+        """The label's weight in a space; 0 where its features are of the image alone."""
+        return next((share for piece, share in self.label_share.items() if piece in text_space.lower()), 0.0)
 
 
 def distractors(noun: str) -> tuple[str, ...]:
@@ -54,6 +62,21 @@ def confirm_by_features(
     if share <= params.accept:
         return Judgement(Verdict.ACCEPT, 1.0 - share, why)
     return Judgement(Verdict.REJECT if share > params.reject else Verdict.UNSURE, 1.0 - share, why)
+
+
+def without_label(feature: F32, label: F32, share: float) -> F32:
+    """The image's own part l of a feature f, where
+
+        f = (share t + (1 - share) l) / |share t + (1 - share) l|,   t = t(label), |t| = |l| = 1
+
+    With x = l.t and c = f.t, the norm n of the sum is n^2 = share^2 + (1 - share)^2 + 2 share (1 - share) x, and
+    n c = share + (1 - share) x; both hold for the greater root of n^2 - 2 share c n + 2 share - 1 = 0.
+    """
+    if share <= 0.0:
+        return feature
+    c = float(feature @ label)
+    n = share * c + float(np.sqrt(max((share * c) ** 2 - (2.0 * share - 1.0), 0.0)))
+    return normalize(np.asarray((n * feature - share * label) / (1.0 - share), np.float32))
 
 
 def target_words(noun: str) -> tuple[str, ...]:

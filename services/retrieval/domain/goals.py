@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ovip.scene.answers import Goal
-from ovip.scene.grid import FloorGrid, distance_field, path_length, shortest_path, traversable
+from ovip.scene.grid import FloorGrid
 from ovip.scene.types import F64, Bools, Floor
+from ovip.scene.walking import distance_field, path_length, shortest_path, traversable
 from services.retrieval.domain.viewpoints import snap
 
 NO_PATH: F64 = np.zeros((0, 3))

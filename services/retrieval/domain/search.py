@@ -15,8 +15,9 @@ import numpy as np
 
 from ovip.errors import InvalidInput
 from ovip.scene.answers import Answer, Query
-from ovip.scene.grid import FloorGrid, distance_field, traversable
+from ovip.scene.grid import FloorGrid
 from ovip.scene.types import F64, Bools, Region
+from ovip.scene.walking import distance_field, traversable
 from services.retrieval.domain.coverage import View, region_cells
 from services.retrieval.domain.schedule import ScheduleParams, nearest, next_region
 from services.retrieval.domain.viewpoints import HEADINGS, ViewpointParams, plan_waypoints, snap
@@ -79,6 +80,11 @@ class Search:
     def visited(self) -> int:
         """Number of viewpoints looked from."""
         return len(self.seen or {})
+
+    @property
+    def remaining(self) -> int:
+        """Number of viewpoints neither looked from nor given up."""
+        return self.planned - self.visited - len(self.unreachable)
 
     def open_at(self, waypoint: Waypoint) -> tuple[int, ...]:
         """Headings of a waypoint that are neither seen nor unreachable."""

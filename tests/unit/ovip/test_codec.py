@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -43,9 +44,13 @@ MAP_OBJECT = t.MapObject(
     version=9,
 )
 DETECTION = detection(detection_id="r.s.00000001/cup/0")
-BATCH = t.DetectionBatch("r.s.00000001", 2**62, camera(), pose(1, 2, 3, 0.4, 0.1), (DETECTION,), DETECTION.points, ("cup",))
+BATCH = t.DetectionBatch(
+    "r.s.00000001", 2**62, camera(), pose(1, 2, 3, 0.4, 0.1), (DETECTION,), DETECTION.points, ("cup",)
+)
 DELTA = t.MapDelta(4, "r.s.00000002", ("o2",), ("o1",), ("o3",), {"o5": "o1", "o4": "o1"})
-REGION = t.Region("r1", 1, "kitchen", "kitchen 2", 12.5, POINT, (RING, RING + 3), (RING * 0.1,), ("o1",), ("f1", "f2"))
+REGION = t.Region(
+    "r1", 1, "kitchen", "kitchen 2", 12.5, POINT, (RING, RING + 3), (RING * 0.1,), ("o1",), ("f1", "f2")
+)
 PARTITION = t.Partition(
     map_version=7,
     revision=2,
@@ -101,7 +106,11 @@ ROUND_TRIPS: dict[str, tuple[Any, Callable[[Any], Any], Callable[[Any], Any]]] =
     "floor grid": (GRID, codec.floor_grid_message, codec.floor_grid_value),
     "frame record": (RECORD, codec.frame_record_message, codec.frame_record_value),
     "status": (STATUS, codec.perception_status_message, codec.perception_status_value),
-    "query": (a.Query("k", "the cup", pose(), 0.3, "kitchen", 1, 4, 5, 6), codec.query_message, codec.query_value),
+    "query": (
+        a.Query("k", "the cup", pose(), 0.3, "kitchen", 1, 4, 5, 6),
+        codec.query_message,
+        codec.query_value,
+    ),
     "bare query": (a.Query("k", "the cup"), codec.query_message, codec.query_value),
     "query of a radius": (a.Query("k", "cup", robot_radius=0.2), codec.query_message, codec.query_value),
     "answer": (ANSWER, codec.answer_message, codec.answer_value),
@@ -157,18 +166,14 @@ def test_bytes_cut_off_are_corrupt_or_another_value_and_never_a_crash(kind: str)
     _, encode, decode = ENCODINGS[kind]
     data = encode(ENCODINGS[kind][0])
     for end in range(0, len(data), max(1, len(data) // 60)):
-        try:
+        with contextlib.suppress(Corrupt, InvalidInput):
             decode(data[:end])
-        except (Corrupt, InvalidInput):
-            pass
 
 
 @given(st.sampled_from(sorted(ENCODINGS)), st.binary(max_size=80))
 def test_no_bytes_raise_anything_but_corrupt_or_invalid_input(kind: str, data: bytes) -> None:
-    try:
+    with contextlib.suppress(Corrupt, InvalidInput):
         ENCODINGS[kind][2](data)
-    except (Corrupt, InvalidInput):
-        pass
 
 
 def test_bytes_that_do_not_parse_are_corrupt_in_words() -> None:

@@ -6,7 +6,16 @@ import grpc
 import pytest
 
 from ovip import errors
-from ovip.errors import Exhausted, InvalidInput, LeaseLost, NotFound, OvipError, TooLarge, Unavailable, from_status
+from ovip.errors import (
+    Exhausted,
+    InvalidInput,
+    LeaseLost,
+    NotFound,
+    OvipError,
+    TooLarge,
+    Unavailable,
+    from_status,
+)
 
 
 def _kinds(kind: type[OvipError] = OvipError) -> list[type[OvipError]]:

@@ -58,7 +58,18 @@ def test_the_keys_of_one_scene_differ(scene: str) -> None:
 def test_every_key_is_listed_in_the_docstring() -> None:
     text = keys.__doc__ or ""
 
-    for kind in ("stream:", "sequences", "frame-ids", "lease:", "fence:", "state:", "doc:", "bucket:", "counter:", "cache:"):
+    for kind in (
+        "stream:",
+        "sequences",
+        "frame-ids",
+        "lease:",
+        "fence:",
+        "state:",
+        "doc:",
+        "bucket:",
+        "counter:",
+        "cache:",
+    ):
         assert kind in text
 
 

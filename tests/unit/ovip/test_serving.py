@@ -37,7 +37,9 @@ class Answering(mapper_pb2_grpc.MapperServiceServicer):
 
 
 @contextlib.asynccontextmanager
-async def serving(act: Callable[[], Any] = lambda: None, key: str | None = None, port: int = 0) -> AsyncIterator[int]:
+async def serving(
+    act: Callable[[], Any] = lambda: None, key: str | None = None, port: int = 0
+) -> AsyncIterator[int]:
     def register(server: grpc.aio.Server) -> None:
         mapper_pb2_grpc.add_MapperServiceServicer_to_server(Answering(act), server)
 

@@ -1,4 +1,4 @@
-"""Image features without CLIP: class posteriors as a convex combination of word features (ConSE, Norouzi et al. 2013)."""
+"""Image features without CLIP: class posteriors as a convex sum of word features (ConSE, Norouzi et al. 2013)."""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
 import threading
 from collections import OrderedDict
 from collections.abc import Sequence
@@ -17,6 +18,7 @@ from services.perception.domain.boxes2d import ScoredBox, Tile, cut_by_tile, sup
 
 _INPUT = (300, 300)
 _REMEMBERED_FRAMES = 64
+_SMALLEST = 16.0  # square pixels
 _LARGEST_PART = 0.95  # a box that fills its whole tile says nothing about where the thing is
 
 
@@ -32,19 +34,21 @@ class TiledDetector:
         )
         self._min_score = min_score
         self._lock = threading.Lock()
-        self._seen: OrderedDict[str, list[ScoredBox]] = OrderedDict()
+        self._seen: OrderedDict[bytes, list[ScoredBox]] = OrderedDict()
 
     async def boxes(self, frame: Frame) -> list[ScoredBox]:
         """Boxes labelled with COCO names, best first, one per thing."""
         return await asyncio.to_thread(self._boxes, frame)
 
     def _boxes(self, frame: Frame) -> list[ScoredBox]:
+        # by the image, not its frame id: ids are unique in one scene only
+        image = hashlib.blake2b(np.ascontiguousarray(frame.rgb), digest_size=16).digest()
         with self._lock:
-            if frame.frame_id not in self._seen:
-                self._seen[frame.frame_id] = self._look(frame.rgb)
+            if image not in self._seen:
+                self._seen[image] = self._look(frame.rgb)
                 if len(self._seen) > _REMEMBERED_FRAMES:
                     self._seen.popitem(last=False)
-            return self._seen[frame.frame_id]
+            return self._seen[image]
 
     def _look(self, rgb: U8) -> list[ScoredBox]:
         height, width = rgb.shape[:2]
@@ -64,7 +68,8 @@ class TiledDetector:
             for row in rows
             if row[2] >= self._min_score and int(row[1]) in COCO
             for box in [_box(row, tile)]
-            if 16.0 < box.area < _LARGEST_PART * tile.width * tile.height or tile.x == tile.y == 0
+            if box.area > _SMALLEST
+            and (part.shape == rgb.shape or box.area < _LARGEST_PART * tile.width * tile.height)
         ]
 
 

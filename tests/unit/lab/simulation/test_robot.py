@@ -23,9 +23,7 @@ ROOM = SimulatedRoom()
 @pytest_asyncio.fixture
 async def client(store: Store, models_dir: Path) -> AsyncIterator[AsyncClient]:
     """A client of a perception service that takes detections made on board."""
-    settings = Settings(_env_file=None).model_copy(
-        update={"models": "given", "models_dir": models_dir, "port": 0}
-    )
+    settings = Settings(_env_file=None, models="given", models_dir=models_dir, perception_port=0)
     async with (
         serve(settings, store) as port,
         AsyncClient(Addresses(perception=f"127.0.0.1:{port}")) as client,
@@ -58,7 +56,7 @@ async def test_a_viewpoint_beyond_furniture_is_unreachable_and_nothing_is_sent(c
     assert through_the_table.unreachable
     assert on_the_bed.unreachable
     assert through_the_table.frame_id == ""
-    assert robot.place == pytest.approx([3.0, 2.4])
+    assert robot.pose[:2, 3] == pytest.approx([3.0, 2.4])
     assert (await client.perception.status("home")).frames_durable == 1
 
 
@@ -66,9 +64,10 @@ async def test_the_path_of_a_viewpoint_is_driven(client: AsyncClient) -> None:
     robot = SimulatedRobot(ROOM, client, "home")
     await robot.look(viewpoint((3.0, 1.0), yaw=0.0))
     around = [(3.0, 1.0, 0.0), (6.2, 1.0, 0.0), (6.2, 2.4, 0.0)]
+    before = robot.travelled
     seen = await robot.look(viewpoint((6.2, 2.4), yaw=0.0, path=around))
     assert not seen.unreachable
-    assert robot.travelled == pytest.approx(3.2 + 1.4)
+    assert robot.travelled - before == pytest.approx(3.2 + 1.4)
 
 
 async def test_a_robot_started_again_goes_on_after_its_last_frame(client: AsyncClient) -> None:
@@ -86,7 +85,7 @@ async def test_a_walk_streamed_twice_is_sent_once(
     robot = SimulatedRobot(short, client, "home")
     assert (await robot.walk()).durable == robot.walk_length == 3
     assert (await robot.walk()).sent == 0
-    assert robot.place == pytest.approx(ROOM.walk()[80][:2, 3])
+    assert robot.pose == pytest.approx(ROOM.walk()[80])
 
 
 def viewpoint(

@@ -43,7 +43,11 @@ def test_intersection_by_hand() -> None:
 
 def test_iou_by_hand() -> None:
     """4 shared of 8 + 8 - 4 = 12."""
-    assert pairwise_iou(CUBE[None], np.stack([SHIFTED, FAR, CUBE]))[0].tolist() == [pytest.approx(1 / 3), 0.0, 1.0]
+    assert pairwise_iou(CUBE[None], np.stack([SHIFTED, FAR, CUBE]))[0].tolist() == [
+        pytest.approx(1 / 3),
+        0.0,
+        1.0,
+    ]
 
 
 def test_iou_of_a_cup_inside_a_table_is_the_ratio_of_their_volumes() -> None:
@@ -108,7 +112,9 @@ def test_bounds_after_a_quarter_turn_about_z_by_hand() -> None:
 
 
 @given(box_lists(least=1), st.floats(-3, 3), st.floats(-1, 1), LENGTHS)
-def test_transformed_bounds_hold_every_transformed_point(boxes: F64, yaw: float, pitch: float, x: float) -> None:
+def test_transformed_bounds_hold_every_transformed_point(
+    boxes: F64, yaw: float, pitch: float, x: float
+) -> None:
     transform = pose(x, 1.0, -2.0, yaw, pitch)
     inside = boxes[0, :3] + (boxes[0, 3:] - boxes[0, :3]) * np.random.default_rng(0).random((20, 3))
     moved = inside @ transform[:3, :3].T + transform[:3, 3]

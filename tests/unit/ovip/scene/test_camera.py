@@ -167,7 +167,9 @@ def test_only_masked_pixels_are_lifted() -> None:
     assert index.tolist() == [3 * 64 + 5]
 
 
-@given(POSES, hnp.arrays(np.float32, (48, 64), elements=st.one_of(st.just(0.0), st.floats(0.25, 10, width=32))))
+@given(
+    POSES, hnp.arrays(np.float32, (48, 64), elements=st.one_of(st.just(0.0), st.floats(0.25, 10, width=32)))
+)
 def test_projecting_what_was_lifted_gives_the_pixels_and_depths_back(where: F64, depth: F32) -> None:
     k = camera()
     points, index = backproject(depth, k, where)

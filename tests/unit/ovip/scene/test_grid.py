@@ -10,11 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from ovip.scene.grid import (
-    FREE,
-    OCCUPIED,
-    UNKNOWN,
-    FloorGrid,
+from ovip.scene.grid import FREE, OCCUPIED, UNKNOWN, FloorGrid
+from ovip.scene.walking import (
     clearance,
     close_footprints,
     distance_field,

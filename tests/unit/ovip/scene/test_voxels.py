@@ -11,8 +11,12 @@ from hypothesis.extra import numpy as hnp
 from ovip.scene.types import F32, I64
 from ovip.scene.voxels import downsample, group_sums, voxel_cells, voxel_keys
 
-CELLS = hnp.arrays(np.int64, st.tuples(st.integers(0, 20), st.just(3)), elements=st.integers(-(2**20), 2**20 - 1))
-CLOUDS = hnp.arrays(np.float32, st.tuples(st.integers(1, 40), st.just(3)), elements=st.floats(-50, 50, width=32))
+CELLS = hnp.arrays(
+    np.int64, st.tuples(st.integers(0, 20), st.just(3)), elements=st.integers(-(2**20), 2**20 - 1)
+)
+CLOUDS = hnp.arrays(
+    np.float32, st.tuples(st.integers(1, 40), st.just(3)), elements=st.floats(-50, 50, width=32)
+)
 
 
 @given(CELLS)
@@ -56,7 +60,9 @@ def test_nothing_downsamples_to_nothing() -> None:
 
 
 @given(CLOUDS, st.randoms(use_true_random=False))
-def test_downsampling_keeps_one_point_a_voxel_inside_it_whatever_the_order(points: F32, shuffler: object) -> None:
+def test_downsampling_keeps_one_point_a_voxel_inside_it_whatever_the_order(
+    points: F32, shuffler: object
+) -> None:
     size = 0.5
     thin, _ = downsample(points, size)
     shuffled, _ = downsample(points[np.random.default_rng(1).permutation(len(points))], size)

@@ -42,7 +42,9 @@ def test_a_plural_becomes_its_singular(text: str, word: str) -> None:
     assert normalize_word(text) == word
 
 
-@pytest.mark.parametrize("word", ["glass", "scissors", "sunglasses", "bus", "gas", "christmas tree", "tennis", "cactus", "tv"])
+@pytest.mark.parametrize(
+    "word", ["glass", "scissors", "sunglasses", "bus", "gas", "christmas tree", "tennis", "cactus", "tv"]
+)
 def test_a_singular_that_looks_like_a_plural_stays(word: str) -> None:
     assert normalize_word(word) == word
 

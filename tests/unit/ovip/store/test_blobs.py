@@ -90,7 +90,9 @@ async def test_a_blob_that_cannot_be_read_is_unavailable(tmp_path: Path) -> None
         await DirectoryBlobs(tmp_path).get(ref)
 
 
-@pytest.mark.parametrize("ref", ["", "short", "../../etc/passwd", "AB" * 32, "ab" * 31 + "/x", "ab" * 33, "é" * 64])
+@pytest.mark.parametrize(
+    "ref", ["", "short", "../../etc/passwd", "AB" * 32, "ab" * 31 + "/x", "ab" * 33, "é" * 64]
+)
 async def test_a_reference_that_is_none_never_touches_the_disk(tmp_path: Path, ref: str) -> None:
     with pytest.raises(InvalidInput, match="blob reference: expected 64 hex digits"):
         await DirectoryBlobs(tmp_path).get(ref)
@@ -110,7 +112,9 @@ def test_a_blob_url_that_is_none_is_refused_in_words(url: str, tmp_path: Path) -
         open_blobs(url, tmp_path)
 
 
-def test_a_bucket_without_its_package_says_which_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bucket_without_its_package_says_which_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(__import__("sys").modules, "boto3", None)
 
     with pytest.raises(NotConfigured, match=r"ovip-sg\[s3\]"):

@@ -47,7 +47,9 @@ async def test_signals_are_left_to_the_process() -> None:
 
 
 async def test_without_the_other_services_it_stands_and_says_whom_it_misses() -> None:
-    async with serve(settings(), None) as port, httpx.AsyncClient(trust_env=False) as client:  # type: ignore[arg-type]
+    names = ("perception", "mapper", "regions", "retrieval", "vlm_gateway")
+    alone = settings().model_copy(update={f"{name}_address": "127.0.0.1:1" for name in names})
+    async with serve(alone, None) as port, httpx.AsyncClient(trust_env=False) as client:  # type: ignore[arg-type]
         reply = await client.get(f"http://127.0.0.1:{port}/readyz")
     assert reply.status_code == 503
     assert "perception, mapper, regions, retrieval, vlm_gateway" in reply.json()["detail"]

@@ -144,6 +144,15 @@ async def test_an_object_that_a_robot_maps_appears_by_itself(page: Any, home: Fl
     await page.wait_for_selector(f"{at('space')}[data-points='2160']")
 
 
+async def test_a_steady_stream_of_changes_is_followed_while_it_lasts(page: Any, home: Flat) -> None:
+    await opened(page)
+    for number in range(60):
+        home.grow("crumb", (1.0 + number / 50, 3.0, 0.0, 1.01 + number / 50, 3.01, 0.01), "r-living")
+        await asyncio.sleep(0.03)
+    assert int(await page.text_content(at("object-count"))) > 17
+    await expect(page.locator(at("object-count"))).to_have_text("77")
+
+
 async def test_the_keyboard_alone_reaches_everything(page: Any) -> None:
     await opened(page)
     await page.keyboard.press("/")

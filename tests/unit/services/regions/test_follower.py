@@ -198,7 +198,7 @@ async def test_without_a_vlm_the_table_groups_and_the_partition_says_so(store: S
     none = VlmGrouper(ScriptedVlm(error=NotConfigured("set OVIP_VLM_UPSTREAMS")), 5.0)
     partition = await partitioned(store, home, none, TableGrouper(NoEncoder()))
     assert [r.function for r in partition.regions] == ["kitchen"]
-    assert partition.fallbacks[0] == "grouping: function table, set OVIP_VLM_UPSTREAMS"
+    assert partition.fallbacks[0] == "grouping: function table, no VLM configured"
     assert "zorb" in partition.fallbacks[1]
 
 

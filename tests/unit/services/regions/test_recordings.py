@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from ovip.scene.camera import backproject
-from ovip.scene.grid import shortest_path
 from ovip.scene.types import F64, Intrinsics
 from ovip.scene.voxels import downsample
+from ovip.scene.walking import shortest_path
 from services.regions.domain.assembly import Cut, PlacedObjects, assemble, survey
 from services.regions.domain.evidence import FloorEvidence
 from services.regions.domain.functions import functions_of

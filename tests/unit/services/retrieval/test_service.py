@@ -680,3 +680,13 @@ async def test_two_robots_of_one_map_share_a_search(home: Store) -> None:
     answers = [events[-1] for _, events in ends]
     assert [answer.outcome for answer in answers] == [Outcome.ABSENT] * 2
     assert all(answer.coverage.visited == answer.coverage.planned for answer in answers)
+
+
+async def test_a_budget_that_just_covers_the_plan_ends_in_absent(home: Store) -> None:
+    world = kettle_world()
+    robot = Robot(world)
+    await drive(build(home, world), START, robot.look)
+    exact = replace(START, max_viewpoints=len(robot.viewpoints))
+    other = kettle_world()
+    _, events = await drive(build(home, other), exact, Robot(other).look)
+    assert events[-1].outcome is Outcome.ABSENT

@@ -1,8 +1,15 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from services.retrieval.domain.confirm import confirm_by_features, distractors, target_words
+from services.retrieval.domain.confirm import (
+    ConfirmParams,
+    confirm_by_features,
+    distractors,
+    target_words,
+    without_label,
+)
 from services.retrieval.domain.judgement import Verdict
 
 OTHERS = np.array([[np.cos(a), np.sin(a)] for a in np.radians([20, 40, 60, 80, 100])], np.float32)
@@ -37,3 +44,23 @@ def test_synonyms_are_the_target_and_never_distract_from_it() -> None:
     assert "cup" in target_words("mug")
     assert not {"cup", "mug"} & set(distractors("mug"))
     assert "bottle" in distractors("mug")
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 70, 100])
+def test_the_label_that_was_mixed_in_is_taken_out_again(degrees: float) -> None:
+    label, image = view(0), view(degrees)
+    mixed = 0.75 * label + 0.25 * image
+    back = without_label(np.asarray(mixed / np.linalg.norm(mixed), np.float32), label, 0.75)
+    np.testing.assert_allclose(back, image, atol=2e-3)
+
+
+def test_an_even_mix_is_taken_out_too_and_no_mix_is_left_alone() -> None:
+    mixed = view(0) + view(90)
+    even = without_label(np.asarray(mixed / np.linalg.norm(mixed), np.float32), view(0), 0.5)
+    np.testing.assert_allclose(even, view(90), atol=1e-5)
+    np.testing.assert_array_equal(without_label(view(20), view(0), 0.0), view(20))
+
+
+def test_only_the_space_that_mixes_labels_in_has_a_share() -> None:
+    assert ConfirmParams().share_in("minilm-l6-v2-int8+conse") == 0.75
+    assert ConfirmParams().share_in("laion/CLIP-ViT-H-14") == 0.0

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ovip.scene.grid import traversable
 from ovip.scene.types import Floor
+from ovip.scene.walking import traversable
 from services.retrieval.domain.goals import floor_of, footprint_distance, way_to
 from tests.unit.services.retrieval.builders import box_at, grid_of
 

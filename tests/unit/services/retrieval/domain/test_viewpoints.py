@@ -4,7 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ovip.scene.grid import FREE, OCCUPIED, FloorGrid, traversable
+from ovip.scene.grid import FREE, OCCUPIED, FloorGrid
+from ovip.scene.walking import traversable
 from services.retrieval.domain.viewpoints import (
     HEADINGS,
     ViewpointParams,

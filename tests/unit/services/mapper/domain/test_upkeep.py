@@ -1,0 +1,93 @@
+"""Upkeep: clutter goes, what lies on or in another is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from ovip.scene.types import F32, F64
+from services.mapper.domain.cloud import VoxelCloud
+from services.mapper.domain.upkeep import UpkeepParams, denoised, inside, overlap
+from tests.builders import block
+
+PARAMS = UpkeepParams()
+SIZE = 0.02
+
+
+def _cloud(*parts: F32) -> VoxelCloud:
+    points = np.concatenate(parts)
+    return VoxelCloud.of(points, np.zeros((len(points), 3), np.uint8), SIZE)
+
+
+def _cup(x: float = 0.01) -> F32:
+    return block((x, 0.01, 0.01), (x + 0.1, 0.11, 0.11), 0.02)
+
+
+def test_a_small_clutter_away_from_the_thing_goes() -> None:
+    stray = np.array([[0.51, 0.01, 0.01], [0.53, 0.01, 0.01]], np.float32)
+
+    kept = denoised(_cloud(_cup(), stray), PARAMS)
+
+    assert kept.box[3] < 0.2
+    assert len(kept) == len(_cloud(_cup()))
+
+
+def test_a_large_second_part_stays() -> None:
+    """Two legs of one table may hang together by nothing that was seen."""
+    both = _cloud(_cup(), _cup(0.51))
+
+    assert len(denoised(both, PARAMS)) == len(both)
+
+
+def test_voxels_seen_once_go_where_most_were_seen_again() -> None:
+    edge = np.array([[0.131, 0.01, 0.01], [0.151, 0.01, 0.01]], np.float32)  # joined to the cup
+
+    assert denoised(_cloud(_cup(), _cup(), edge), PARAMS).box[3] < 0.12
+    assert denoised(_cloud(_cup(), edge), PARAMS).box[3] > 0.14  # nothing was seen twice yet
+
+
+def test_one_voxel_is_left_alone() -> None:
+    assert len(denoised(_cloud(np.full((1, 3), 0.01, np.float32)), PARAMS)) == 1
+
+
+def test_overlap_is_the_share_of_the_smaller_cloud_by_hand() -> None:
+    """Ten voxels in a row against four, two of which lie on the ten."""
+    ten = np.array([[0.01 + 0.02 * i, 0.01, 0.01] for i in range(10)], np.float32)
+    four = np.array([[0.15, 0.01, 0.01], [0.19, 0.01, 0.01], [0.41, 0.01, 0.01], [0.61, 0.01, 0.01]], np.float32)
+
+    assert overlap(_cloud(ten), _cloud(four), 0.01) == 0.5
+    assert overlap(_cloud(four), _cloud(ten), 0.01) == 0.5
+    assert overlap(_cloud(ten), _cloud(ten), 0.01) == 1.0
+
+
+def test_clouds_apart_do_not_overlap() -> None:
+    assert overlap(_cloud(_cup()), _cloud(_cup(2.01)), 0.04) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "share"),
+    [
+        ((0, 0, 0, 1, 1, 1), (0, 0, 0, 2, 2, 2), 1.0),
+        ((0.5, 0, 0, 1.5, 1, 1), (0, 0, 0, 1, 4, 4), 0.5),
+        ((3, 3, 3, 4, 4, 4), (0, 0, 0, 1, 1, 1), 0.0),
+    ],
+)
+def test_inside_is_the_share_of_the_smaller_box_by_hand(a: Sequence[float], b: Sequence[float], share: float) -> None:
+    one, other = _box(a), _box(b)
+
+    assert inside(one, other, 0.0) == pytest.approx(share)
+    assert inside(other, one, 0.0) == pytest.approx(share)
+
+
+def test_flat_boxes_have_the_thickness_of_the_slack() -> None:
+    """A wall seen face on has no depth; half a voxel on each side gives it one."""
+    wall, part = _box((0, 0, 0, 1, 1, 0)), _box((0.2, 0.2, 0, 0.4, 0.4, 0))
+
+    assert inside(wall, part, 0.01) == pytest.approx(1.0)
+    assert inside(wall, part + np.array([0, 0, 0.5, 0, 0, 0.5]), 0.01) == 0.0
+
+
+def _box(corners: Sequence[float]) -> F64:
+    return np.array(corners, np.float64)
