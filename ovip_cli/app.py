@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from ovip.config import explain
 from ovip.errors import OvipError
-from ovip_cli import export, find, models, replay, scenes, up
+from ovip_cli import bench, export, find, models, replay, scenes, up
 
 app = typer.Typer(
     name="ovip",
@@ -23,6 +23,7 @@ app.command("replay")(replay.replay)
 app.command("find")(find.find)
 app.command("scenes")(scenes.scenes)
 app.command("export")(export.export)
+app.command("bench")(bench.bench)
 app.add_typer(models.app, name="models")
 
 

@@ -10,11 +10,7 @@ from typing import Annotated
 
 import typer
 
-from lab.bench.ingesting import measure_ingest
-from lab.bench.perceiving import measure_perception
 from lab.bench.rows import Row
-from lab.bench.starting import measure_start
-from lab.bench.tier1 import measure_tier1
 from ovip.recordings import LAYOUTS
 from ovip.telemetry import configure_logging
 from ovip_cli.stacks import Json, print_json
@@ -40,6 +36,12 @@ def bench(
     json: Json = False,
 ) -> None:
     """Measure durable ingest, perception's steps, tier 1's answers, the start of a stack."""
+    # the services that are measured: seconds that the other commands need not wait
+    from lab.bench.ingesting import measure_ingest
+    from lab.bench.perceiving import measure_perception
+    from lab.bench.starting import measure_start
+    from lab.bench.tier1 import measure_tier1
+
     configure_logging("warning", as_json=False)
     measures = {
         Bench.INGEST: lambda: asyncio.run(measure_ingest(robots, kilobytes, duration)),

@@ -202,7 +202,9 @@ def random_run(seed: int, frames: int, dimension: int = 6) -> list[DetectionBatc
         high = low + rng.uniform(0.1, 0.5, 3)
         corner = rng.integers(0, 30, 2)
         return detection(
-            str(rng.choice(["cup", "mug", "table"])) if rng.random() < 0.2 else ["cup", "mug", "table"][i % 3],
+            str(rng.choice(["cup", "mug", "table"]))
+            if rng.random() < 0.2
+            else ["cup", "mug", "table"][i % 3],
             points=block(tuple(low), tuple(high), 0.12),
             feature=normalize((kinds[i] + rng.normal(0, 0.1, dimension)).astype(np.float32)),
             box2=Box2(float(corner[0]), float(corner[1]), float(corner[0]) + 20, float(corner[1]) + 15),

@@ -9,7 +9,14 @@ from types import TracebackType
 from typing import Literal
 
 from ovip.client.addresses import Addresses
-from ovip.client.streaming import PATIENCE_SECONDS, FrameStream, Hello, OutgoingFrame, StreamEvent, StreamReport
+from ovip.client.streaming import (
+    PATIENCE_SECONDS,
+    FrameStream,
+    Hello,
+    OutgoingFrame,
+    StreamEvent,
+    StreamReport,
+)
 from ovip.clients import MapperClient, PerceptionClient, RegionsClient, RetrievalClient, connect
 from ovip.errors import Corrupt, DeadlineExceeded, Unavailable
 from ovip.keys import log_order

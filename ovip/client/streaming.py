@@ -285,6 +285,8 @@ async def _pause_or_raise(error: grpc.aio.AioRpcError, deadline: float) -> None:
         grpc.StatusCode.CANCELLED,
         grpc.StatusCode.UNKNOWN,
     }
+    # a connection cut in the middle of a write; the service's own INTERNAL has other words
+    lost |= error.code() is grpc.StatusCode.INTERNAL and error.details() == "Internal error from Core"
     if not lost or time.monotonic() > deadline:
         raise known from error
     await asyncio.sleep(0.3)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import fcntl
 import os
 import shutil
@@ -19,6 +18,14 @@ from ovip.errors import Conflict, InvalidInput, NotConfigured, Unavailable
 _START_SECONDS = 60.0
 _LOCK_SECONDS = 10.0  # a killed predecessor's server needs a moment to go
 _LONGEST_SOCKET_PATH = 100
+# not a preexec_fn: beside threads (gRPC's, say) a fork that runs Python may crash before it becomes the server
+_LAUNCHER = """
+import ctypes, os, sys
+ctypes.CDLL(None).prctl(1, 9)  # PR_SET_PDEATHSIG, SIGKILL
+if os.getppid() != int(sys.argv[1]):
+    sys.exit(1)
+os.execv(sys.argv[2], sys.argv[2:])
+"""
 
 
 def server_binary() -> str:
@@ -55,25 +62,19 @@ class EmbeddedServer:
             ) from error
         self._take_lock()
         self.socket = self._socket_path()
+        command = [
+            server_binary(),
+            *("--port", "0", "--unixsocket", str(self.socket), "--unixsocketperm", "700"),
+            *("--dir", str(self.directory), "--appendonly", "yes", "--appendfsync", fsync, "--save", ""),
+            *("--aof-load-truncated", "yes", "--daemonize", "no"),
+            *("--logfile", str(self.directory / "server.log")),
+        ]
         self._process = subprocess.Popen(
-            [
-                server_binary(),
-                *("--port", "0", "--unixsocket", str(self.socket), "--unixsocketperm", "700"),
-                *("--dir", str(self.directory), "--appendonly", "yes", "--appendfsync", fsync, "--save", ""),
-                *(
-                    "--aof-load-truncated",
-                    "yes",
-                    "--logfile",
-                    str(self.directory / "server.log"),
-                    "--daemonize",
-                    "no",
-                ),
-            ],
+            _dying_with_us(command),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
-            preexec_fn=_die_with_parent if sys.platform == "linux" else None,
         )
         self._wait_until_up()
 
@@ -119,12 +120,17 @@ class EmbeddedServer:
     def _wait_until_up(self) -> None:
         deadline = time.monotonic() + _START_SECONDS
         while not self.socket.exists():
-            if self._process.poll() is not None or time.monotonic() > deadline:
+            status = self._process.poll()
+            if status is not None or time.monotonic() > deadline:
                 self.close()
-                raise Unavailable(f"the embedded store did not start; it says: {self.last_words()}")
+                raise Unavailable(
+                    f"the embedded store did not start (exit status {status}); it says: {self.last_words()}"
+                )
             time.sleep(0.02)
 
 
-
-def _die_with_parent() -> None:
-    ctypes.CDLL("libc.so.6", use_errno=True).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+def _dying_with_us(command: list[str]) -> list[str]:
+    """The command, begun by a launcher that ties it to this process (to the thread that starts it)."""
+    if sys.platform != "linux":
+        return command
+    return [sys.executable, "-I", "-S", "-c", _LAUNCHER, str(os.getpid()), *command]

@@ -170,7 +170,9 @@ class Mapper:
         while log_order(current.cursor) < log_order(cursor):
             entries = await self._store.read(scene, DETECTIONS, current.cursor, _BATCHES_A_READ)
             if not entries:
-                raise Corrupt(f"scene {scene}: the detections log ends before {cursor}, which the map has seen")
+                raise Corrupt(
+                    f"scene {scene}: the detections log ends before {cursor}, which the map has seen"
+                )
             for entry in entries:
                 if log_order(entry.id) <= log_order(cursor):
                     await self._integrate(current, entry)

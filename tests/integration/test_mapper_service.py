@@ -58,7 +58,9 @@ async def mapper_on(store: Store, settings: Settings = SETTINGS) -> AsyncIterato
             await channel.close()
 
 
-async def map_at(mapper: MapperClient, log_id: str, scene: str = SCENE, unconfirmed: bool = False) -> SceneMap:
+async def map_at(
+    mapper: MapperClient, log_id: str, scene: str = SCENE, unconfirmed: bool = False
+) -> SceneMap:
     """The map once it has seen a log entry."""
     async with asyncio.timeout(20):
         while True:
@@ -132,8 +134,17 @@ async def test_another_process_reads_the_same_map_to_the_bit(store: Store, tmp_p
         here = await map_at(mapper, newest)
     assert store._server
 
-    command = [sys.executable, "-c", READER, f"unix://{store._server.socket}", f"file://{tmp_path}/data/blobs", "4"]
-    done = await asyncio.to_thread(subprocess.run, command, cwd=ROOT, capture_output=True, text=True, check=True)
+    command = [
+        sys.executable,
+        "-c",
+        READER,
+        f"unix://{store._server.socket}",
+        f"file://{tmp_path}/data/blobs",
+        "4",
+    ]
+    done = await asyncio.to_thread(
+        subprocess.run, command, cwd=ROOT, capture_output=True, text=True, check=True
+    )
 
     assert json.loads(done.stdout) == [here.state_hash, here.version]
 
@@ -153,7 +164,9 @@ async def test_a_restarted_mapper_goes_on_from_its_snapshot_to_the_same_map(stor
     assert await versions_in(store) == list(range(1, len(RUN) + 1))
 
 
-async def test_a_writer_that_loses_its_lease_midway_is_followed_without_a_gap_or_a_repeat(store: Store) -> None:
+async def test_a_writer_that_loses_its_lease_midway_is_followed_without_a_gap_or_a_repeat(
+    store: Store,
+) -> None:
     await write(store, RUN[:5])
     async with mapper_on(store) as first, mapper_on(store) as second:
         await map_at(first, (await store.newest(SCENE, "detections"))[0].id)
@@ -301,7 +314,10 @@ async def test_what_is_not_there_is_not_found_in_words(store: Store) -> None:
 
 
 async def test_unconfirmed_objects_are_shown_only_when_asked_for(store: Store) -> None:
-    newest = await write(store, [batch(1, detection("cup")), batch(2, detection("cup"), detection("lamp", (3, 0, 0), (4, 1, 1)))])
+    newest = await write(
+        store,
+        [batch(1, detection("cup")), batch(2, detection("cup"), detection("lamp", (3, 0, 0), (4, 1, 1)))],
+    )
     async with mapper_on(store) as mapper:
         believed, everything = await map_at(mapper, newest), await map_at(mapper, newest, unconfirmed=True)
 
@@ -336,7 +352,9 @@ async def test_points_are_thinned_to_no_more_than_asked_with_some_of_each_object
             assert all(points.shape == colors.shape for points, colors in thin.values())
         fewer_than_objects = await mapper.get_points(SCENE, max_points=2)
 
-    assert {name: len(points) for name, (points, _) in every.items()} == {n: o.voxels for n, o in objects.items()}
+    assert {name: len(points) for name, (points, _) in every.items()} == {
+        n: o.voxels for n, o in objects.items()
+    }
     assert sum(len(points) for points, _ in fewer_than_objects.values()) <= 2
     low, high = objects["o000004"].box[:3], objects["o000004"].box[3:]
     assert ((every["o000004"][0] >= low - 1e-6) & (every["o000004"][0] <= high + 1e-6)).all()

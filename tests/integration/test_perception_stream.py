@@ -298,13 +298,25 @@ WRONG = {
     "a NaN pose": ({"world_from_camera": np.full((4, 4), np.nan)}, "pose: expected finite numbers"),
     "a pose that is not rigid": ({"world_from_camera": np.diag([2.0, 2, 2, 1])}, "pose: expected a rigid"),
     "a pose of 3x3": ({"world_from_camera": np.eye(3)}, "pose: expected 16 numbers .* got 9"),
-    "depth of another size": ({"depth": png(depth_units(hello().intrinsics))}, "depth image: expected 96x72 .* got 64x48"),
-    "depth of 8 bits": ({"depth": png(np.zeros((72, 96), np.uint8))}, "depth image: expected one channel of 16 bits"),
+    "depth of another size": (
+        {"depth": png(depth_units(hello().intrinsics))},
+        "depth image: expected 96x72 .* got 64x48",
+    ),
+    "depth of 8 bits": (
+        {"depth": png(np.zeros((72, 96), np.uint8))},
+        "depth image: expected one channel of 16 bits",
+    ),
     "a depth scale of 0": ({"depth_scale": 0.0}, "depth image: expected a scale"),
-    "colour of another size": ({"rgb": jpeg(colour_noise(hello().intrinsics))}, "colour image: expected 96x72"),
+    "colour of another size": (
+        {"rgb": jpeg(colour_noise(hello().intrinsics))},
+        "colour image: expected 96x72",
+    ),
     "a truncated JPEG": ({"rgb": jpeg(colour_noise(K))[:900]}, "colour image: expected a whole JPEG"),
     "no colour": ({"rgb": b""}, "colour image: expected JPEG or PNG bytes, got 0 bytes"),
-    "garbage for zstd": ({"depth": b"no", "depth_encoding": "shuffle_zstd"}, "depth image: .* do not decompress"),
+    "garbage for zstd": (
+        {"depth": b"no", "depth_encoding": "shuffle_zstd"},
+        "depth image: .* do not decompress",
+    ),
     "a sequence too large": ({"sequence": 10**8}, "sequence: expected 1 to 99999999"),
     "a time too large": ({"timestamp_ns": 2**64 - 1}, "timestamp_ns: expected nanoseconds"),
     "a score of 2": (
@@ -319,7 +331,9 @@ WRONG = {
 
 
 @pytest.mark.parametrize("what", WRONG)
-async def test_a_wrong_frame_is_rejected_with_its_reason_and_the_stream_goes_on(what: str, store: Store) -> None:
+async def test_a_wrong_frame_is_rejected_with_its_reason_and_the_stream_goes_on(
+    what: str, store: Store
+) -> None:
     change, words = WRONG[what]
     events: list[StreamEvent] = []
     frames = [dataclasses.replace(GOOD, **{"sequence": 1, **change}), painted(10, "cup")]
@@ -363,7 +377,9 @@ async def test_a_20_mb_message_ends_its_stream_in_words_and_nothing_else(store: 
             with pytest.raises(TooLarge, match="larger than max"):
                 await robot.read()
         with pytest.raises(TooLarge, match="frame 2: expected at most 16 MB a frame, got 19.1 MB"):
-            await send(port, [painted(1, "cup"), dataclasses.replace(GOOD, sequence=2, rgb=b"x" * 20_000_000)])
+            await send(
+                port, [painted(1, "cup"), dataclasses.replace(GOOD, sequence=2, rgb=b"x" * 20_000_000)]
+            )
         await other.frame(painted(1, "cup"))
         await other.acks("RECEIVED", "DURABLE")
         assert (await send(port, [painted(3, "cup")])).durable == 1
@@ -420,6 +436,37 @@ async def test_a_stream_goes_on_over_lost_connections_without_loss_or_repeat(sto
     assert ids == [f"r1.s1.{n:08d}" for n in range(1, 41)]
 
 
+async def test_a_robot_that_was_waiting_goes_on_when_the_service_was_restarted(store: Store) -> None:
+    restarted = asyncio.Event()
+    first_is_durable = asyncio.Event()
+
+    async def live() -> AsyncIterator[OutgoingFrame]:
+        yield painted(1, "cup")
+        await restarted.wait()
+        yield painted(2, "cup")
+
+    def note(event: StreamEvent) -> None:
+        if event.status == "durable":
+            first_is_durable.set()
+
+    async with perception_on(store) as port:
+        sending = asyncio.create_task(_send_live(port, live(), note))
+        await first_is_durable.wait()
+    async with perception_on(store, perception_port=port):
+        restarted.set()
+        report = await asyncio.wait_for(sending, 20)
+
+    assert (report.durable, report.rejected) == (2, [])
+    assert report.reconnects >= 1
+
+
+async def _send_live(
+    port: int, frames: AsyncIterator[OutgoingFrame], on_event: Callable[[StreamEvent], None]
+) -> StreamReport:
+    async with channel_to(port) as channel:
+        return await FrameStream(channel, HELLO, keep="newest", on_event=on_event).send(frames)
+
+
 async def test_a_robot_that_starts_anew_resumes_its_session_where_it_was(store: Store) -> None:
     frames = [painted(n, "cup") for n in range(1, 8)]
     async with perception_on(store) as port:
@@ -439,7 +486,9 @@ async def test_a_service_that_stays_away_is_unavailable_in_words(store: Store) -
             await send(port, [painted(1, "cup")], key=key, patience_s=0.5)
 
 
-async def test_frames_that_cannot_be_read_raise_their_error_after_those_before_are_durable(store: Store) -> None:
+async def test_frames_that_cannot_be_read_raise_their_error_after_those_before_are_durable(
+    store: Store,
+) -> None:
     def broken() -> Iterator[OutgoingFrame]:
         yield painted(1, "cup")
         raise OSError("the disk is gone")
@@ -502,7 +551,9 @@ async def test_a_robot_never_has_more_in_flight_than_its_credits(store: Store) -
         open_ -= event.status == "durable"
 
     async with perception_on(store, window=3) as port, channel_to(port) as channel:
-        await FrameStream(Counting(channel), HELLO, on_event=done).send(painted(n, "cup") for n in range(1, 16))
+        await FrameStream(Counting(channel), HELLO, on_event=done).send(
+            painted(n, "cup") for n in range(1, 16)
+        )
 
     assert max(in_flight) <= 3
 
@@ -540,7 +591,12 @@ async def test_frames_become_detections_through_the_gate_with_late_ones_caught_u
         ("4", False, ["cup"]),
     ]
     assert status.vocabulary == ("cup",)
-    assert (status.frames_durable, status.frames_processed, status.frames_skipped, status.detections) == (4, 4, 0, 4)
+    assert (status.frames_durable, status.frames_processed, status.frames_skipped, status.detections) == (
+        4,
+        4,
+        0,
+        4,
+    )
     assert len({d.detection_id for b in batches for d in b.detections}) == 4
     assert all(len(b.surface) > 0 for b in batches if not b.late)
     assert not any(len(b.surface) for b in batches if b.late)
@@ -563,9 +619,13 @@ async def test_a_map_grows_from_a_stream(store: Store) -> None:
     assert sorted((o.label, o.frames) for o in seen.objects) == [("chair", 5), ("cup", 5)]
 
 
-async def test_a_robot_that_detects_on_board_skips_the_models_and_the_gate(store: Store, models: PaintedModels) -> None:
+async def test_a_robot_that_detects_on_board_skips_the_models_and_the_gate(
+    store: Store, models: PaintedModels
+) -> None:
     seen = (OutgoingDetection("Coffee Mugs", 0.8, Box2(20, 20, 60, 60), feature=(0.0,) * 7 + (2.0,)),)
-    frame = dataclasses.replace(painted(1, "cup"), rgb=png(np.full((72, 96, 3), 90, np.uint8)), detections=seen)
+    frame = dataclasses.replace(
+        painted(1, "cup"), rgb=png(np.full((72, 96, 3), 90, np.uint8)), detections=seen
+    )
     empty = dataclasses.replace(painted(2, "cup"), detections=())
     async with perception_on(store) as port:
         await send(port, [frame, empty])
@@ -635,7 +695,9 @@ async def test_two_robots_stream_into_one_scene_at_once(store: Store) -> None:
     async with perception_on(store) as port:
         await asyncio.gather(
             *(
-                send(port, [painted(n, "cup") for n in range(1, 6)], dataclasses.replace(HELLO, robot_id=robot))
+                send(
+                    port, [painted(n, "cup") for n in range(1, 6)], dataclasses.replace(HELLO, robot_id=robot)
+                )
                 for robot in ("r1", "r2")
             )
         )

@@ -95,7 +95,9 @@ async def test_what_was_acknowledged_is_there_after_kill_9_of_the_whole_stack(tm
         assert len(frames) >= acknowledged
         assert len(versions) >= acknowledged
         for entry in frames:
-            assert await store.blobs.get(entry.fields["blob"].decode()) == b"frame %d" % int(entry.fields["n"])
+            assert await store.blobs.get(entry.fields["blob"].decode()) == b"frame %d" % int(
+                entry.fields["n"]
+            )
         assert await store.cursor("kitchen", "mapper") == frames[len(versions) - 1].id
         assert int((await store.values("kitchen", "mapper", ["version"]))["version"]) == len(versions)
     finally:
@@ -139,7 +141,9 @@ async def test_a_second_stack_over_the_same_directory_is_refused_in_words(
     with writer(tmp_path) as process:
         _line(process)
 
-        with pytest.raises(Conflict, match="in use by another stack: stop it, or choose another OVIP_DATA_DIR"):
+        with pytest.raises(
+            Conflict, match="in use by another stack: stop it, or choose another OVIP_DATA_DIR"
+        ):
             await Store.connect(kernel_settings(tmp_path))
 
         assert _line(process) == ("durable", 1)  # the first is not disturbed

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ovip.scene.boxes import pairwise_intersection, volume
+from ovip.scene.clusters import clusters
 from ovip.scene.types import F32, F64, Bools
 from services.mapper.domain.cloud import VoxelCloud
 
@@ -63,8 +62,6 @@ def inside(a: F64, b: F64, slack: float) -> float:
 
 
 def _large_clusters(points: F32, params: UpkeepParams) -> Bools:
-    pairs = cKDTree(points).query_pairs(params.cluster_radius, output_type="ndarray")
-    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
-    _, labels = connected_components(graph, directed=False)
+    labels = clusters(points, params.cluster_radius)
     sizes = np.bincount(labels)
     return np.asarray(sizes[labels] >= params.cluster_share * sizes.max())

@@ -8,7 +8,7 @@ import time
 import cv2
 
 from ovip.clients import VlmClient
-from ovip.errors import Exhausted, NotConfigured, Unavailable
+from ovip.errors import DeadlineExceeded, Exhausted, NotConfigured, Unavailable
 from ovip.scene.types import U8, Frame
 from ovip.scene.words import normalize_word
 from ovip.telemetry import get_logger
@@ -45,7 +45,7 @@ class VlmEnumerator:
         try:
             image = await asyncio.to_thread(_jpeg, frame.rgb)
             reply = await self._vlm.ask("enumerate", PROMPT, [image], SCHEMA, max_output_tokens=800)
-        except (NotConfigured, Unavailable, Exhausted) as error:
+        except (NotConfigured, Unavailable, Exhausted, DeadlineExceeded) as error:
             if self._fallback is None:
                 raise
             log.info("enumerator_fallback", reason=str(error))

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from ovip.scene.boxes import box_of
 from ovip.scene.camera import lift_pixels
+from ovip.scene.clusters import clusters
 from ovip.scene.types import F32, F64, U8, Bools, Frame
 from ovip.scene.voxels import downsample
 
@@ -74,9 +72,7 @@ def largest_cluster(points: F32, radius: float) -> Bools:
     """
     if len(points) == 0:
         return np.zeros(0, dtype=bool)
-    pairs = cKDTree(points).query_pairs(radius, output_type="ndarray")
-    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
-    _, labels = connected_components(graph, directed=False)
+    labels = clusters(points, radius)
     return np.asarray(labels == np.bincount(labels).argmax())
 
 

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from scipy import ndimage, sparse
-from scipy.sparse import csgraph
+from scipy import ndimage
 from scipy.spatial import cKDTree
 from skimage.graph import MCP_Geometric
 from skimage.segmentation import watershed
 
+from ovip.scene.clusters import clusters
 from ovip.scene.types import F64, I32, I64, Bools
 
 UNKNOWN_FUNCTION = "unknown"
@@ -207,11 +207,8 @@ def cluster(points: F64, eps: float) -> list[I64]:
     """
     if not len(points):
         return []
-    pairs = cKDTree(points).query_pairs(eps, output_type="ndarray")
-    graph = sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
-    _, piece = csgraph.connected_components(graph, directed=False)
-    pieces = [np.flatnonzero(piece == k) for k in range(piece.max() + 1)]
-    return sorted(pieces, key=lambda members: int(members[0]))
+    piece = clusters(points, eps)
+    return [np.flatnonzero(piece == k) for k in range(piece.max() + 1)]
 
 
 def _groups_of_core(

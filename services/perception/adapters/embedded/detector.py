@@ -42,7 +42,7 @@ class TiledDetector:
 
     def _boxes(self, frame: Frame) -> list[ScoredBox]:
         # by the image, not its frame id: ids are unique in one scene only
-        image = hashlib.blake2b(np.ascontiguousarray(frame.rgb), digest_size=16).digest()
+        image = hashlib.blake2b(np.ascontiguousarray(frame.rgb).tobytes(), digest_size=16).digest()
         with self._lock:
             if image not in self._seen:
                 self._seen[image] = self._look(frame.rgb)

@@ -14,7 +14,7 @@ KEEP = 0.35
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """threshold: the backend's own score, above 0 and below 1, at which its authors keep a box."""
+    """threshold: the backend's own score, above 0 and below 1, at which it keeps a box by default."""
 
     threshold: float
 

@@ -22,9 +22,9 @@ from services.perception.ports import Grounder
 
 _SETTING = "OVIP_FULL_GROUNDER"
 
-# Each backend's own threshold, as its authors publish it (docs/models.md).
+# Each backend's own threshold: the default of its post-processing in transformers (docs/models.md).
 _BY_PHRASES = {"grounding-dino": Calibration(0.25), "mm-grounding-dino": Calibration(0.25)}
-_BY_QUERIES = {"owlv2": Calibration(0.2), "owlvit": Calibration(0.1), "omdet-turbo": Calibration(0.3)}
+_BY_QUERIES = {"owlv2": Calibration(0.1), "owlvit": Calibration(0.1), "omdet-turbo": Calibration(0.3)}
 _QUERY_TEXTS = {"owlv2": "a photo of a {}", "owlvit": "a photo of a {}", "omdet-turbo": "{}"}
 
 

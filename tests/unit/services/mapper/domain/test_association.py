@@ -28,7 +28,9 @@ FAR = np.array([[5.0, 5, 5, 6, 6, 6]])
 
 def _score(box: F64, feature: F32, label: str, object_box: F64, params: AssociationParams = PAPER) -> float:
     """Against one object: a cup along feature axis 0."""
-    return float(association_scores(box, feature[None], [label], object_box, axis(0)[None], ["cup"], params)[0, 0])
+    return float(
+        association_scores(box, feature[None], [label], object_box, axis(0)[None], ["cup"], params)[0, 0]
+    )
 
 
 # Eq. 2
@@ -103,7 +105,9 @@ def test_a_detection_among_equal_objects_joins_the_oldest(copies: int) -> None:
     boxes = np.tile(BOX, (copies, 1))
     for tau in (1.05, 0.2):
         params = AssociationParams(tau=tau)
-        assigned = associate(np.tile(BOX, (20, 1)), features, ["cup"] * 20, boxes, same, ["cup"] * copies, params)
+        assigned = associate(
+            np.tile(BOX, (20, 1)), features, ["cup"] * 20, boxes, same, ["cup"] * copies, params
+        )
         assert set(assigned.tolist()) <= {0, NEW}
 
 

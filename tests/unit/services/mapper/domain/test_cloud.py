@@ -12,7 +12,9 @@ from ovip.scene.types import F32, U8
 from services.mapper.domain.cloud import VoxelCloud
 
 SIZE = 0.5
-POINTS = hnp.arrays(np.float32, st.tuples(st.integers(1, 25), st.just(3)), elements=st.floats(-3, 3, width=32))
+POINTS = hnp.arrays(
+    np.float32, st.tuples(st.integers(1, 25), st.just(3)), elements=st.floats(-3, 3, width=32)
+)
 
 
 def _colors(points: F32) -> U8:

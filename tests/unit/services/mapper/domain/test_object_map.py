@@ -98,7 +98,9 @@ def test_detections_of_one_frame_are_scored_against_the_map_before_it() -> None:
     """The second would join what the first of its own frame has just made, were it there already."""
     first = detection("cup", (0, 0, 0), (0.2, 0.2, 0.2))
     second = detection("cup", (0.18, 0, 0), (0.38, 0.2, 0.2), feature=leaning(0, 1, 0.8))
-    loose = MapParams(AssociationParams(tau=0.5), upkeep=UpkeepParams(confirm_frames=1, merge_similarity=0.99))
+    loose = MapParams(
+        AssociationParams(tau=0.5), upkeep=UpkeepParams(confirm_frames=1, merge_similarity=0.99)
+    )
 
     assert len(_map_of(batch(1, first, second), params=loose).objects()) == 2
     assert len(_map_of(batch(1, first), batch(2, second), params=loose).objects()) == 1
@@ -222,7 +224,14 @@ def test_what_was_not_seen_again_is_forgotten_and_what_was_confirmed_is_not() ->
 
     removed = [made.integrate(batch(n)).removed for n in range(3, 9)]
 
-    assert removed == [(), (), (), ("o000002",), (), ()]  # at the upkeep of batch 6, four or more after batch 1
+    assert removed == [
+        (),
+        (),
+        (),
+        ("o000002",),
+        (),
+        (),
+    ]  # at the upkeep of batch 6, four or more after batch 1
     assert _ids(made) == ["o000001"]
     assert made.find("o000002") is None
 
@@ -282,10 +291,16 @@ def test_merging_adds_the_accumulators() -> None:
 def test_things_of_other_labels_or_other_looks_never_merge_as_duplicates() -> None:
     place = {"low": (0, 0, 0), "high": (1, 0.6, 0.04)}
     named = _map_of(
-        *(batch(n, detection("table", **place), detection("desk", feature=axis(3), **place)) for n in range(1, 25))
+        *(
+            batch(n, detection("table", **place), detection("desk", feature=axis(3), **place))
+            for n in range(1, 25)
+        )
     )
     looking = _map_of(
-        *(batch(n, detection("table", **place), detection("table", feature=axis(3), **place)) for n in range(1, 25))
+        *(
+            batch(n, detection("table", **place), detection("table", feature=axis(3), **place))
+            for n in range(1, 25)
+        )
     )
 
     assert len(named.objects()) == 2
@@ -406,9 +421,7 @@ def test_ids_are_never_reused_and_no_view_is_lost(seed: int) -> None:
     objects: Sequence[MapObject] = made.objects(include_unconfirmed=True)
     assert sum(o.observations for o in objects) == sum(len(one.detections) for one in run) == made.detections
     assert sum(sum(o.label_counts.values()) for o in objects) == made.detections
-    weights = [
-        view_weight(d.box2, K.width, K.height, FusionParams()) for one in run for d in one.detections
-    ]
+    weights = [view_weight(d.box2, K.width, K.height, FusionParams()) for one in run for d in one.detections]
     assert sum(o.view_weight for o in objects) == pytest.approx(sum(weights))
 
 

@@ -55,7 +55,9 @@ def test_one_voxel_is_left_alone() -> None:
 def test_overlap_is_the_share_of_the_smaller_cloud_by_hand() -> None:
     """Ten voxels in a row against four, two of which lie on the ten."""
     ten = np.array([[0.01 + 0.02 * i, 0.01, 0.01] for i in range(10)], np.float32)
-    four = np.array([[0.15, 0.01, 0.01], [0.19, 0.01, 0.01], [0.41, 0.01, 0.01], [0.61, 0.01, 0.01]], np.float32)
+    four = np.array(
+        [[0.15, 0.01, 0.01], [0.19, 0.01, 0.01], [0.41, 0.01, 0.01], [0.61, 0.01, 0.01]], np.float32
+    )
 
     assert overlap(_cloud(ten), _cloud(four), 0.01) == 0.5
     assert overlap(_cloud(four), _cloud(ten), 0.01) == 0.5
@@ -74,7 +76,9 @@ def test_clouds_apart_do_not_overlap() -> None:
         ((3, 3, 3, 4, 4, 4), (0, 0, 0, 1, 1, 1), 0.0),
     ],
 )
-def test_inside_is_the_share_of_the_smaller_box_by_hand(a: Sequence[float], b: Sequence[float], share: float) -> None:
+def test_inside_is_the_share_of_the_smaller_box_by_hand(
+    a: Sequence[float], b: Sequence[float], share: float
+) -> None:
     one, other = _box(a), _box(b)
 
     assert inside(one, other, 0.0) == pytest.approx(share)

@@ -41,7 +41,13 @@ def test_corner_tiles_stay_inside_and_cover_the_image(width: int, height: int) -
     for tile in corners:
         assert tile.x >= 0 and tile.x + tile.width <= width
         assert tile.y >= 0 and tile.y + tile.height <= height
-    for point in ((0, 0), (width - 1, 0), (0, height - 1), (width - 1, height - 1), (width // 2, height // 2)):
+    for point in (
+        (0, 0),
+        (width - 1, 0),
+        (0, height - 1),
+        (width - 1, height - 1),
+        (width // 2, height // 2),
+    ):
         assert any(t.x <= point[0] < t.x + t.width and t.y <= point[1] < t.y + t.height for t in corners)
 
 

@@ -35,7 +35,9 @@ def _online(tags: Tags, params: GateParams) -> list[tuple[str, str]]:
 @example([{"cup"}, {"cup"}, {"cup"}], GateParams(3))
 @example([{"cup"}, {"cup"}], GateParams(3))
 @example([{"logo"}] * 5, GateParams(1))
-def test_online_grounds_exactly_the_pairs_of_offline_each_once(run: list[set[str]], params: GateParams) -> None:
+def test_online_grounds_exactly_the_pairs_of_offline_each_once(
+    run: list[set[str]], params: GateParams
+) -> None:
     online = _online(_numbered(run), params)
 
     assert set(online) == gate_offline(_numbered(run), params)
@@ -57,7 +59,7 @@ def test_a_gate_written_down_and_read_back_goes_on_as_if_never_stopped(
 ) -> None:
     gate, pairs = VocabularyGate.empty(params), []
     for frame_id, words in _numbered(run):
-        gate = VocabularyGate(params, {word: tuple(list(frames)) for word, frames in gate.named.items()})
+        gate = VocabularyGate(params, {word: tuple(frames) for word, frames in gate.named.items()})
         gate, admission = gate.observe(frame_id, words)
         pairs += [(frame_id, word) for word in admission.words] + list(admission.late)
 

@@ -46,7 +46,9 @@ def test_a_wall_two_metres_ahead_is_lifted_to_its_plane() -> None:
 
 
 def test_the_pose_takes_the_wall_into_the_world() -> None:
-    lifted = lift(frame(2.0, k=K, world_from_camera=pose(1, 2, 1.5)), _mask(slice(40, 80), slice(60, 100)), PARAMS)
+    lifted = lift(
+        frame(2.0, k=K, world_from_camera=pose(1, 2, 1.5)), _mask(slice(40, 80), slice(60, 100)), PARAMS
+    )
 
     assert lifted is not None
     assert lifted.points[:, 0] == pytest.approx(3.0, abs=1e-5)

@@ -81,9 +81,7 @@ def test_of_two_surfaces_the_one_with_most_of_the_middle_wins() -> None:
     assert right[20, 50] and not right[20, 20]
 
 
-@given(
-    st.floats(-20, 80), st.floats(-20, 60), st.floats(0, 60), st.floats(0, 60), st.integers(0, 2**32 - 1)
-)
+@given(st.floats(-20, 80), st.floats(-20, 60), st.floats(0, 60), st.floats(0, 60), st.integers(0, 2**32 - 1))
 def test_a_mask_stays_inside_its_box_and_on_measured_depth(
     x: float, y: float, w: float, h: float, seed: int
 ) -> None:
