@@ -70,7 +70,11 @@ find_python() {
 # ---- the packages ----
 
 packages_fingerprint() {
-    { cat "$lock" pyproject.toml constraints/build.txt; .venv/bin/python --version; } | sha256sum
+    {
+        cat "$lock" constraints/build.txt
+        sed '/^\[tool\./,$d' pyproject.toml
+        .venv/bin/python --version
+    } | sha256sum
 }
 
 is_stamped() {

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 from hypothesis import HealthCheck, settings
+from redis.asyncio.retry import Retry
 
 from ovip.store import Store
 from services.perception.adapters import model_cache
@@ -28,7 +29,15 @@ async def store(tmp_path: Path) -> AsyncIterator[Store]:
     try:
         yield opened
     finally:
+        if opened._server:
+            opened._server._process.kill()  # its data goes with the directory: a gentle stop takes longer
         await opened.close()
+
+
+@pytest.fixture
+def no_patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A store that is away is given up at once, not after seconds of trying again."""
+    monkeypatch.setattr("ovip.store.store.Retry", lambda backoff, _: Retry(backoff, 1))
 
 
 @pytest.fixture(scope="session")

@@ -25,15 +25,15 @@ def check_pose(pose: F64) -> F64:
         raise InvalidInput(
             "pose: expected finite numbers, got NaN or infinity (tracking lost? skip the frame)"
         )
-    rotation = np.clip(
-        pose[:3, :3], -2.0, 2.0
-    )  # entries beyond 1 are wrong already; squares of huge ones overflow
+    # entries beyond 1 are wrong already; squares of huge ones overflow
+    rotation = np.clip(pose[:3, :3], -2.0, 2.0)
     error = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
-    if error > ROTATION_TOLERANCE or np.linalg.det(rotation) < 0:
+    determinant = float(rotation[0] @ np.cross(rotation[1], rotation[2]))
+    if error > ROTATION_TOLERANCE or determinant < 0:
         raise InvalidInput(
             "pose: expected a rigid world_from_camera "
             f"(rotation orthonormal within {ROTATION_TOLERANCE}, right-handed), "
-            f"got a rotation off by {error:.3g} with determinant {np.linalg.det(rotation):.3g}"
+            f"got a rotation off by {error:.3g} with determinant {determinant:.3g}"
         )
     if np.abs(pose[3] - [0, 0, 0, 1]).max() > 1e-6:
         raise InvalidInput(f"pose: expected last row 0 0 0 1, got {pose[3].tolist()}")

@@ -41,6 +41,7 @@ def models(monkeypatch: pytest.MonkeyPatch) -> PaintedModels:
     """The painted world's models behind the seams; everything else is as it runs."""
     made = PaintedModels()
     monkeypatch.setattr(perception, "open_models", lambda settings, vlm: made.as_models())
+    monkeypatch.setattr("ovip.stages._LOOK_FOR_SCENES_SECONDS", 0.05)
     return made
 
 

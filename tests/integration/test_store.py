@@ -62,6 +62,8 @@ async def store(request: pytest.FixtureRequest, tmp_path: Path) -> AsyncIterator
     opened = await Store.connect(kernel_settings(tmp_path / "data", redis_url=redis_url))
     await opened._client.flushall()
     yield opened
+    if opened._server:
+        opened._server._process.kill()  # its data goes with the directory: a gentle stop takes longer
     await opened.close()
 
 
@@ -519,6 +521,7 @@ async def test_a_cancelled_task_may_still_speak_to_the_store_on_its_way_out(stor
 # A server that cannot be reached
 
 
+@pytest.mark.usefixtures("no_patience")
 async def test_a_url_that_nothing_answers_is_named_in_the_error(tmp_path: Path) -> None:
     with pytest.raises(Unavailable, match="OVIP_REDIS_URL"):
         await Store.connect(kernel_settings(tmp_path, redis_url=f"unix://{tmp_path}/nothing"))
@@ -532,6 +535,7 @@ async def test_a_url_that_is_none_is_refused_without_repeating_it(bad: str, tmp_
     assert "secret" not in str(refused.value)
 
 
+@pytest.mark.usefixtures("no_patience")
 async def test_a_server_that_goes_away_is_unavailable_in_words(tmp_path: Path) -> None:
     with server_at(tmp_path / "s") as address:
         store = await Store.connect(kernel_settings(tmp_path, redis_url=address))

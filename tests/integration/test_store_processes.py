@@ -196,6 +196,7 @@ async def test_a_data_directory_that_cannot_be_written_is_refused_in_words(tmp_p
         await Store.connect(kernel_settings(tmp_path / "file"))
 
 
+@pytest.mark.usefixtures("no_patience")
 async def test_a_server_that_does_not_start_says_why(tmp_path: Path) -> None:
     (tmp_path / "store" / "appendonlydir").mkdir(parents=True)
     (tmp_path / "store" / "appendonlydir" / "appendonly.aof.manifest").write_text("nonsense")
@@ -204,6 +205,7 @@ async def test_a_server_that_does_not_start_says_why(tmp_path: Path) -> None:
         await Store.connect(kernel_settings(tmp_path))
 
 
+@pytest.mark.usefixtures("no_patience")
 async def test_a_server_killed_under_us_is_unavailable_and_close_still_works(tmp_path: Path) -> None:
     store = await Store.connect(kernel_settings(tmp_path))
     assert store._server

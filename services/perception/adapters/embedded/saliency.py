@@ -31,6 +31,8 @@ class SaliencySegmenter:
     def __init__(self, models: Path) -> None:
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = 2
+        # waiting threads would burn the cores that the rest of the stack needs
+        options.add_session_config_entry("session.intra_op.allow_spinning", "0")
         self._session = onnxruntime.InferenceSession(
             str(models / "u2netp.onnx"), options, providers=["CPUExecutionProvider"]
         )

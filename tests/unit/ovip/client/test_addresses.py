@@ -15,7 +15,10 @@ from ovip.client.addresses import running_stack
 from ovip.errors import Corrupt
 from tests.builders import kernel_settings
 
-SERVICES = {name: f"127.0.0.1:{n}" for n, name in enumerate(("perception", "mapper", "regions", "retrieval", "api"), 1)}
+SERVICES = {
+    name: f"127.0.0.1:{n}"
+    for n, name in enumerate(("perception", "mapper", "regions", "retrieval", "api"), 1)
+}
 
 
 def _written(folder: Path, **changes: object) -> Path:

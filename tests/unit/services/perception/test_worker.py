@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections.abc import Awaitable, Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -91,15 +90,20 @@ async def pairs_in(store: Store) -> set[tuple[str, str]]:
     return pairs
 
 
-async def expected_log(folder: Path) -> list[dict[str, bytes]]:
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, bytes]]:
     """The detections log of a worker that nothing stopped, on a store of its own."""
-    store = await Store.connect(kernel_settings(folder))
-    try:
-        await keep(store, FRAMES)
-        await work(store, worker_on(store))
-        return await log_of(store)
-    finally:
-        await store.close()
+
+    async def never_stopped() -> list[dict[str, bytes]]:
+        store = await Store.connect(kernel_settings(tmp_path_factory.mktemp("never_stopped")))
+        try:
+            await keep(store, FRAMES)
+            await work(store, worker_on(store))
+            return await log_of(store)
+        finally:
+            await store.close()
+
+    return asyncio.run(never_stopped())
 
 
 async def test_online_the_worker_grounds_the_pairs_that_offline_would(store: Store) -> None:
@@ -126,9 +130,8 @@ async def test_tags_counts_and_vocabulary_are_written_with_the_step(store: Store
 
 
 async def test_a_worker_killed_anywhere_and_begun_again_writes_the_same_log(
-    store: Store, tmp_path: Path
+    store: Store, expected: list[dict[str, bytes]]
 ) -> None:
-    expected = await expected_log(tmp_path / "never stopped")
     await keep(store, FRAMES)
     for cut in (1, 2, 3, 5, 6):
 
@@ -143,9 +146,8 @@ async def test_a_worker_killed_anywhere_and_begun_again_writes_the_same_log(
 
 @pytest.mark.parametrize("at", [1, 3, 6, 8])
 async def test_a_model_that_crashes_delays_its_frame_and_loses_nothing(
-    at: int, store: Store, tmp_path: Path
+    at: int, store: Store, expected: list[dict[str, bytes]]
 ) -> None:
-    expected = await expected_log(tmp_path / "never stopped")
     await keep(store, FRAMES)
     crashing = worker_on(store, PaintedModels({at: RuntimeError("out of memory")}))
 
@@ -182,9 +184,8 @@ class _Failing:
 @pytest.mark.parametrize("after", [False, True])
 @pytest.mark.parametrize("at", [1, 4, 8])
 async def test_a_commit_that_fails_or_whose_answer_is_lost_is_done_once(
-    at: int, after: bool, store: Store, tmp_path: Path
+    at: int, after: bool, store: Store, expected: list[dict[str, bytes]]
 ) -> None:
-    expected = await expected_log(tmp_path / "never stopped")
     await keep(store, FRAMES)
 
     with contextlib.suppress(Unavailable):
@@ -195,10 +196,9 @@ async def test_a_commit_that_fails_or_whose_answer_is_lost_is_done_once(
 
 
 async def test_a_second_worker_waits_and_takes_over(
-    store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    store: Store, expected: list[dict[str, bytes]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("ovip.stages.LEASE_SECONDS", 0.5)
-    expected = await expected_log(tmp_path / "never stopped")
     await keep(store, FRAMES[:4])
     waiting = asyncio.create_task(worker_on(store).follow(SCENE))
     await work(store, worker_on(store))
