@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -23,11 +25,25 @@ class Bench(StrEnum):
     START = "start"
 
 
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How large a bench is. rate: frames a second of all robots together."""
+
+    robots: int
+    kilobytes: int
+    duration: float
+    rate: float
+    frames: int
+    recording: Path | None
+    layout: str
+
+
 def bench(
     name: Annotated[Bench | None, typer.Argument(help="what to measure; all where left out")] = None,
     robots: Annotated[int, typer.Option(min=1, help="ingest: robots that stream at once")] = 16,
     kilobytes: Annotated[int, typer.Option(min=100, help="ingest: size of a frame")] = 300,
-    duration: Annotated[float, typer.Option(min=1.0, help="ingest: seconds each way")] = 6.0,
+    duration: Annotated[float, typer.Option(min=0.1, help="ingest: seconds each way")] = 6.0,
+    rate: Annotated[float, typer.Option(min=1.0, help="ingest: frames a second of the paced row")] = 250.0,
     frames: Annotated[int, typer.Option(min=1, help="perception: frames to look at")] = 12,
     recording: Annotated[
         Path | None, typer.Option(help="perception: a recording instead of the simulated home")
@@ -36,28 +52,52 @@ def bench(
     json: Json = False,
 ) -> None:
     """Measure durable ingest, perception's steps, tier 1's answers, the start of a stack."""
-    # the services that are measured: seconds that the other commands need not wait
-    from lab.bench.ingesting import measure_ingest
-    from lab.bench.perceiving import measure_perception
-    from lab.bench.starting import measure_start
-    from lab.bench.tier1 import measure_tier1
-
     configure_logging("warning", as_json=False)
-    measures = {
-        Bench.INGEST: lambda: asyncio.run(measure_ingest(robots, kilobytes, duration)),
-        Bench.PERCEPTION: lambda: asyncio.run(measure_perception(frames, recording, layout)),
-        Bench.TIER1: lambda: asyncio.run(measure_tier1()),
-        Bench.START: measure_start,
-    }
+    options = Options(robots, kilobytes, duration, rate, frames, recording, layout)
     began = time.perf_counter()
     every: list[Row] = []
     for which in [name] if name else Bench:
-        rows = measures[which]()
+        rows = MEASURES[which](options)
         every += [{"bench": which.value, **row} for row in rows]
         if not json:
             _print_table(which.value, rows)
     if json:
         print_json({"rows": every, "seconds": round(time.perf_counter() - began, 2)})
+
+
+# A bench brings the models and services that it measures only when it runs.
+
+
+def _ingest(options: Options) -> list[Row]:
+    from lab.bench.ingesting import measure_ingest
+
+    return asyncio.run(measure_ingest(options.robots, options.kilobytes, options.duration, options.rate))
+
+
+def _perception(options: Options) -> list[Row]:
+    from lab.bench.perceiving import measure_perception
+
+    return asyncio.run(measure_perception(options.frames, options.recording, options.layout))
+
+
+def _tier1(_: Options) -> list[Row]:
+    from lab.bench.tier1 import measure_tier1
+
+    return asyncio.run(measure_tier1())
+
+
+def _start(_: Options) -> list[Row]:
+    from lab.bench.starting import measure_start
+
+    return measure_start()
+
+
+MEASURES: dict[Bench, Callable[[Options], list[Row]]] = {
+    Bench.INGEST: _ingest,
+    Bench.PERCEPTION: _perception,
+    Bench.TIER1: _tier1,
+    Bench.START: _start,
+}
 
 
 def _print_table(name: str, rows: list[Row]) -> None:

@@ -37,20 +37,22 @@ class Pictures:
         return (len(self.rgb) + len(self.depth)) / 1000
 
 
-async def measure_ingest(robots: int = 16, kilobytes: int = 300, seconds: float = 6.0) -> list[Row]:
-    """Robots stream for `seconds` each: as fast as credits let them, then together at 250 frames a second.
+async def measure_ingest(
+    robots: int = 16, kilobytes: int = 300, seconds: float = 6.0, rate: float = BUDGET_FPS
+) -> list[Row]:
+    """Robots stream for `seconds` each: as fast as credits let them, then `rate` frames a second together.
 
     An ack is counted from handing the frame to the SDK until it is durable, waiting for credits included.
     Every frame's bytes are its own, for a blob that is there already costs nothing.
     """
-    paces = (("as fast as it goes", None), (f"{BUDGET_FPS:.0f} a second", BUDGET_FPS / robots))
+    paces = (("as fast as it goes", None), (f"{rate:g} a second", rate / robots))
     with tempfile.TemporaryDirectory() as folder:
         process = start_stack(Path(folder), free_ports=True, module="lab.bench.intake")
         try:
             address = str(read_ready(process)["address"])
             return [
-                {"pace": pace, **await _measure(address, f"bench{number}", robots, kilobytes, seconds, rate)}
-                for number, (pace, rate) in enumerate(paces)
+                {"pace": pace, **await _measure(address, f"bench{number}", robots, kilobytes, seconds, each)}
+                for number, (pace, each) in enumerate(paces)
             ]
         finally:
             stop_stack(process)

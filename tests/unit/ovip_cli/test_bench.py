@@ -14,7 +14,7 @@ from ovip_cli import bench
 @pytest.fixture
 def command(monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
     """The command, with a start that takes no time."""
-    monkeypatch.setattr(bench, "measure_start", lambda: [{"data": "new", "ready_s": 1.5}])
+    monkeypatch.setitem(bench.MEASURES, bench.Bench.START, lambda _: [{"data": "new", "ready_s": 1.5}])
     app = typer.Typer()
     app.command()(bench.bench)
     return app
