@@ -20,9 +20,10 @@ trap 'if [ -n "$scratch" ]; then rm -rf "$scratch"; fi' EXIT
 
 main() {
     if ! environment_is_here; then make_environment; fi
-    if ! is_stamped "$stamp" "$(packages_fingerprint)"; then
+    if ! is_stamped "$stamp" "$(packages_fingerprint "$lock")"; then
         install_packages
-        packages_fingerprint >"$stamp"
+        packages_fingerprint requirements.lock >.venv/.everyday
+        packages_fingerprint "$lock" >"$stamp" # the tools' lock has the everyday one in it
     fi
     if ! models_are_here; then pull_models; fi
     say ready
@@ -71,7 +72,7 @@ find_python() {
 
 packages_fingerprint() {
     {
-        cat "$lock" constraints/build.txt
+        cat "$1" constraints/build.txt
         sed '/^\[tool\./,$d' pyproject.toml
         .venv/bin/python --version
     } | sha256sum

@@ -144,7 +144,7 @@ def test_every_address_leads_to_a_service_that_listens_there() -> None:
     }
     environment = compose()["services"]["api"]["environment"]
     addresses = {key: value for key, value in environment.items() if key.endswith("_ADDRESS")}
-    assert len(addresses) == 5
+    assert len(addresses) == 6
     for key, value in addresses.items():
         host, _, port = value.partition(":")
         service = key.removeprefix("OVIP_").removesuffix("_ADDRESS").lower()
