@@ -15,7 +15,7 @@ demo: setup  ## map a recording or a simulated room, ask five questions, leave t
 	@$(bin)/python -m lab.demo
 
 test: dev browser  ## run the tests (PYTEST_ARGS="-k kitchen" and the like)
-	@$(bin)/python -m pytest $(PYTEST_ARGS)
+	@$(bin)/python -m pytest -n 2 --dist loadfile $(PYTEST_ARGS)
 
 check: check-lock check-format check-lint check-types check-imports check-proto  ## format, lint, types, layers, API
 	@echo "check: all good"

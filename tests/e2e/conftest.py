@@ -14,6 +14,7 @@ import pytest
 from lab.simulation import SimulatedRoom, write_recording
 from services.perception.adapters import model_cache
 from services.perception.config import Settings
+from services.standalone.process import read_ready, stop_stack
 
 ROOT = Path(__file__).resolve().parents[2]
 KITCHEN = ROOT.parent / "shared" / "data" / "kitchen"
@@ -41,6 +42,29 @@ def room_recording(tmp_path_factory: pytest.TempPathFactory, embedded_models: Pa
     room = SimulatedRoom(seed=0)
     write_recording(folder, room, room.walk()[::2])
     return folder
+
+
+class Stack:
+    """A whole stack in a process of its own, on free ports, that a test may ask, stop or kill."""
+
+    def __init__(self, cli: Cli, data: Path, settings: dict[str, str] | None = None) -> None:
+        chosen = settings or {"OVIP_FREE_PORTS": "true"}
+        environment = {**cli.environment, "OVIP_LOG_LEVEL": "warning", **chosen, "OVIP_DATA_DIR": str(data)}
+        self.data = data
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "services.standalone"], env=environment, stdout=subprocess.PIPE, text=True
+        )
+        self.running = read_ready(self.process)
+
+    def __enter__(self) -> Stack:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        stop_stack(self.process)
+
+    def kill_nine(self) -> None:
+        self.process.kill()
+        self.process.wait()
 
 
 class Cli:

@@ -16,7 +16,7 @@ import pytest
 
 from ovip.healthcheck import is_well
 from ovip.store.embedded import server_binary
-from tests.e2e.conftest import Cli
+from tests.e2e.conftest import Cli, Stack
 
 pytestmark = pytest.mark.models
 SERVICES = ("vlm_gateway", "mapper", "perception", "regions", "retrieval", "api")
@@ -89,9 +89,9 @@ def test_apart_or_together_the_same_frames_give_the_same_map_and_answers(
     cli: Cli, room_recording: Path, tmp_path: Path
 ) -> None:
     replay = ("replay", room_recording, "--scene", "home")
-    data = tmp_path / "together"
-    together = cli.json(*replay, "--standalone", "--data-dir", data)
-    answers = [cli.json("find", q, "--scene", "home", "--standalone", "--data-dir", data) for q in QUESTIONS]
+    with Stack(cli, tmp_path / "together") as stack:
+        together = cli.json(*replay, "--data-dir", stack.data)
+        answers = [cli.json("find", q, "--scene", "home", "--data-dir", stack.data) for q in QUESTIONS]
     (tmp_path / "apart").mkdir()
     with deployed_apart(cli, tmp_path / "apart") as environment:
         remote = Cli({**os.environ, **environment})

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
-import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -15,23 +11,9 @@ from typing import Any
 import pytest
 
 from ovip.client import Addresses, AsyncClient
-from tests.e2e.conftest import Cli
+from tests.e2e.conftest import Cli, Stack
 
 pytestmark = pytest.mark.models
-
-
-def start_stack(cli: Cli, data: Path) -> tuple[subprocess.Popen[str], dict[str, Any]]:
-    environment = {**cli.environment, "OVIP_DATA_DIR": str(data), "OVIP_FREE_PORTS": "true"}
-    stack = subprocess.Popen(
-        [sys.executable, "-m", "services.standalone"], env=environment, stdout=subprocess.PIPE, text=True
-    )
-    assert stack.stdout is not None
-    return stack, json.loads(stack.stdout.readline())
-
-
-def kill_nine(stack: subprocess.Popen[str]) -> None:
-    os.kill(stack.pid, signal.SIGKILL)
-    stack.wait()
 
 
 def replay(recording: Path, layout: str, stride: int) -> tuple[str | Path, ...]:
@@ -54,10 +36,10 @@ def test_a_replay_killed_twice_midway_ends_in_the_same_map(
     words, expected = replay(room_recording, "ovip", 1), whole_room
     data = tmp_path / "killed"
     for nth in range(2):
-        stack, running = start_stack(cli, data)
+        stack = Stack(cli, data)
         replaying = cli.start(*words, "--data-dir", data, "--json")
-        wait_for_progress(running, frames=8 * (nth + 1))
-        kill_nine(stack)
+        wait_for_progress(stack, frames=8 * (nth + 1))
+        stack.kill_nine()
         replaying.kill()
         replaying.communicate()
     resumed = uninterrupted(cli, data, words)
@@ -69,13 +51,13 @@ def test_a_replay_killed_twice_midway_ends_in_the_same_map(
 
 @pytest.mark.recording
 def test_real_perception_killed_midway_ends_in_the_same_map(cli: Cli, kitchen: Path, tmp_path: Path) -> None:
-    words = replay(kitchen, "7scenes", 24)
+    words = replay(kitchen, "7scenes", 35)
     expected = uninterrupted(cli, tmp_path / "whole", words)
     data = tmp_path / "killed"
-    stack, running = start_stack(cli, data)
+    stack = Stack(cli, data)
     replaying = cli.start(*words, "--data-dir", data, "--json")
-    wait_for_progress(running, frames=3)
-    kill_nine(stack)
+    wait_for_progress(stack, frames=2)
+    stack.kill_nine()
     replaying.kill()
     replaying.communicate()
     resumed = uninterrupted(cli, data, words)
@@ -89,30 +71,23 @@ def test_a_replay_outlives_the_stack_and_goes_on_with_the_next_one(
     """The client reconnects by itself where the stack comes back at the same addresses."""
     words, expected = replay(room_recording, "ovip", 1), whole_room
     data = tmp_path / "killed"
-    stack, first = start_stack(cli, data)
+    stack = Stack(cli, data)
     replaying = cli.start(*words, "--data-dir", data, "--json")
-    wait_for_progress(first, frames=8)
-    kill_nine(stack)
-    fixed = {
+    wait_for_progress(stack, frames=8)
+    stack.kill_nine()
+    same_ports = {
         f"OVIP_{name.upper()}_PORT": address.rpartition(":")[2]
-        for name, address in first["addresses"].items()
+        for name, address in stack.running["addresses"].items()
     }
-    environment = {**cli.environment, **fixed, "OVIP_DATA_DIR": str(data)}
-    second = subprocess.Popen(
-        [sys.executable, "-m", "services.standalone"], env=environment, stdout=subprocess.PIPE, text=True
-    )
-    try:
+    with Stack(cli, data, same_ports):
         output, errors = replaying.communicate(timeout=240)
-        assert replaying.returncode == 0, errors[-2000:]
-        assert json.loads(output)["state_hash"] == expected["state_hash"]
-    finally:
-        second.terminate()
-        second.wait(30)
+    assert replaying.returncode == 0, errors[-2000:]
+    assert json.loads(output)["state_hash"] == expected["state_hash"]
 
 
-def wait_for_progress(running: dict[str, Any], frames: int) -> None:
+def wait_for_progress(stack: Stack, frames: int) -> None:
     """Returns once the scene's map holds so many frames."""
-    asyncio.run(_wait_for_progress(Addresses.of_stack(running), frames))
+    asyncio.run(_wait_for_progress(Addresses.of_stack(stack.running), frames))
 
 
 async def _wait_for_progress(addresses: Addresses, frames: int) -> None:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import re
 import shutil
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from ovip_cli.stacks import read_ready, stop_stack
-from tests.e2e.conftest import Cli
+from tests.e2e.conftest import Cli, Stack
 
 playwright = pytest.importorskip(
     "playwright.sync_api", reason="playwright is not installed: dashboard not tested"
@@ -42,20 +39,8 @@ SCENE = "home"
 @pytest.fixture(scope="module")
 def stack(cli: Cli, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
     """A stack on free ports, with its data directory in `data`."""
-    data = tmp_path_factory.mktemp("dashboard")
-    environment = {
-        **cli.environment,
-        "OVIP_DATA_DIR": str(data),
-        "OVIP_FREE_PORTS": "true",
-        "OVIP_LOG_LEVEL": "warning",
-    }
-    process = subprocess.Popen(
-        [sys.executable, "-m", "services.standalone"], stdout=subprocess.PIPE, text=True, env=environment
-    )
-    try:
-        yield {**read_ready(process), "data": data}
-    finally:
-        stop_stack(process)
+    with Stack(cli, tmp_path_factory.mktemp("dashboard")) as stack:
+        yield {**stack.running, "data": stack.data}
 
 
 @pytest.fixture(scope="module")

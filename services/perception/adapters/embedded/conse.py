@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
+import os
 import threading
 from collections.abc import Sequence
 from pathlib import Path
@@ -44,6 +46,10 @@ class ConseEncoder:
         lines = (models / "imagenet_labels.txt").read_text().splitlines()
         self._classes = [normalize_word(line.split(",")[0]) for line in lines if line.strip()]
         self._class_features: F32 | None = None
+        self._kept = (
+            models
+            / f"imagenet_words-{hashlib.sha256(chr(10).join(self._classes).encode()).hexdigest()[:12]}.npy"
+        )
 
     async def embed_crops(self, frame: Frame, boxes: Sequence[ScoredBox]) -> F32:
         return await asyncio.to_thread(self._embed_crops, frame, boxes)
@@ -75,9 +81,31 @@ class ConseEncoder:
         return np.asarray((raw.astype(np.float32) - zero) * scale, np.float32)
 
     def _features(self) -> F32:
+        """Text features of the classes `(1000, D)`: seconds to make, so they are kept beside the models."""
+        if self._class_features is None:
+            self._class_features = _read(self._kept, len(self._classes))
         if self._class_features is None:
             self._class_features = self._texts.embed_now(self._classes)
+            _keep(self._kept, self._class_features)
         return self._class_features
+
+
+def _read(path: Path, rows: int) -> F32 | None:
+    try:
+        features = np.load(path)
+    except (OSError, ValueError):
+        return None
+    good = features.shape == (rows, DIMENSION) and features.dtype == np.float32
+    return features if good else None
+
+
+def _keep(path: Path, features: F32) -> None:
+    aside = path.with_name(f".{path.name}.{os.getpid()}.npy")
+    try:
+        np.save(aside, features)
+        aside.rename(path)
+    except OSError:  # a read-only model directory: the next process makes them again
+        return
 
 
 def _crop(rgb: U8, box: ScoredBox) -> U8:

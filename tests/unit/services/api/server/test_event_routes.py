@@ -124,6 +124,6 @@ async def test_open_streams_do_not_hold_up_the_stop(
             for reply in replies:
                 await anext(reply.aiter_raw())
             began = time.monotonic()
-        assert time.monotonic() - began < 2
+        assert time.monotonic() - began < 9  # an open stream would wait for its client's 10 s
         for reply in replies:
             await reply.aclose()
