@@ -194,6 +194,13 @@ class RegionsClient:
         reply = await _read(lambda: self._stub.Recompute(request, timeout=_SLOW_SECONDS))
         return codec.partition_value(reply.partition)
 
+    async def watch(self, scene: str, after_revision: int = 0) -> AsyncIterator[Partition]:
+        """The newest partition above a revision, then each new one, until the caller stops."""
+        request = regions_pb2.WatchRegionsRequest(scene=scene, after_revision=after_revision)
+        with _errors():
+            async for reply in self._stub.WatchRegions(request):
+                yield codec.partition_value(reply.partition)
+
     async def get_floor_grid(self, scene: str, floor: int) -> FloorGrid:
         request = regions_pb2.GetFloorGridRequest(scene=scene, floor=floor)
         return codec.floor_grid_value(

@@ -95,6 +95,20 @@ class RecomputeResponse(_message.Message):
     partition: Partition
     def __init__(self, partition: _Optional[_Union[Partition, _Mapping]] = ...) -> None: ...
 
+class WatchRegionsRequest(_message.Message):
+    __slots__ = ("scene", "after_revision")
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    AFTER_REVISION_FIELD_NUMBER: _ClassVar[int]
+    scene: str
+    after_revision: int
+    def __init__(self, scene: _Optional[str] = ..., after_revision: _Optional[int] = ...) -> None: ...
+
+class WatchRegionsResponse(_message.Message):
+    __slots__ = ("partition",)
+    PARTITION_FIELD_NUMBER: _ClassVar[int]
+    partition: Partition
+    def __init__(self, partition: _Optional[_Union[Partition, _Mapping]] = ...) -> None: ...
+
 class GetFloorGridRequest(_message.Message):
     __slots__ = ("scene", "floor")
     SCENE_FIELD_NUMBER: _ClassVar[int]

@@ -45,6 +45,11 @@ class RegionsServiceStub(object):
                 request_serializer=ovip_dot_v1_dot_regions__pb2.RecomputeRequest.SerializeToString,
                 response_deserializer=ovip_dot_v1_dot_regions__pb2.RecomputeResponse.FromString,
                 _registered_method=True)
+        self.WatchRegions = channel.unary_stream(
+                '/ovip.v1.RegionsService/WatchRegions',
+                request_serializer=ovip_dot_v1_dot_regions__pb2.WatchRegionsRequest.SerializeToString,
+                response_deserializer=ovip_dot_v1_dot_regions__pb2.WatchRegionsResponse.FromString,
+                _registered_method=True)
         self.GetFloorGrid = channel.unary_unary(
                 '/ovip.v1.RegionsService/GetFloorGrid',
                 request_serializer=ovip_dot_v1_dot_regions__pb2.GetFloorGridRequest.SerializeToString,
@@ -70,6 +75,13 @@ class RegionsServiceServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def WatchRegions(self, request, context):
+        """The newest partition above a revision, then each new one as it is made.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
     def GetFloorGrid(self, request, context):
         """The grids of one floor: free, occupied, unknown; clearance; region labels.
         """
@@ -89,6 +101,11 @@ def add_RegionsServiceServicer_to_server(servicer, server):
                     servicer.Recompute,
                     request_deserializer=ovip_dot_v1_dot_regions__pb2.RecomputeRequest.FromString,
                     response_serializer=ovip_dot_v1_dot_regions__pb2.RecomputeResponse.SerializeToString,
+            ),
+            'WatchRegions': grpc.unary_stream_rpc_method_handler(
+                    servicer.WatchRegions,
+                    request_deserializer=ovip_dot_v1_dot_regions__pb2.WatchRegionsRequest.FromString,
+                    response_serializer=ovip_dot_v1_dot_regions__pb2.WatchRegionsResponse.SerializeToString,
             ),
             'GetFloorGrid': grpc.unary_unary_rpc_method_handler(
                     servicer.GetFloorGrid,
@@ -151,6 +168,33 @@ class RegionsService(object):
             '/ovip.v1.RegionsService/Recompute',
             ovip_dot_v1_dot_regions__pb2.RecomputeRequest.SerializeToString,
             ovip_dot_v1_dot_regions__pb2.RecomputeResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def WatchRegions(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_stream(
+            request,
+            target,
+            '/ovip.v1.RegionsService/WatchRegions',
+            ovip_dot_v1_dot_regions__pb2.WatchRegionsRequest.SerializeToString,
+            ovip_dot_v1_dot_regions__pb2.WatchRegionsResponse.FromString,
             options,
             channel_credentials,
             insecure,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
 from typing import Any
 
 import grpc
@@ -29,6 +30,12 @@ class RegionsServicer(regions_pb2_grpc.RegionsServiceServicer):
         return pb.RecomputeResponse(
             partition=codec.partition_message(await self._regions.recompute(request.scene))
         )
+
+    async def WatchRegions(
+        self, request: pb.WatchRegionsRequest, context: Any
+    ) -> AsyncIterator[pb.WatchRegionsResponse]:
+        async for partition in self._regions.watch(request.scene, request.after_revision):
+            yield pb.WatchRegionsResponse(partition=codec.partition_message(partition))
 
     async def GetFloorGrid(self, request: pb.GetFloorGridRequest, context: Any) -> pb.GetFloorGridResponse:
         return codec.floor_grid_message(await self._regions.floor_grid(request.scene, request.floor))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
 
 from ovip.errors import DeadlineExceeded, NotFound
 from ovip.scene.grid import FloorGrid
@@ -30,6 +30,17 @@ class Regions:
         """The newest partition; empty, with revision 0, before the first. NotFound for an unknown scene."""
         await self._check(scene)
         return await self._shelf.partition(scene)
+
+    async def watch(self, scene: str, after_revision: int) -> AsyncIterator[Partition]:
+        """The newest partition, if it is above a revision, then each new one, for ever. NotFound as above."""
+        await self._check(scene)
+        since = await self._shelf.newest_entry(scene)
+        newest = await self._shelf.partition(scene)
+        if newest.revision > after_revision:
+            yield newest
+        async for partition in self._shelf.partitions(scene, since):
+            if partition.revision > max(newest.revision, after_revision):
+                yield partition
 
     async def floor_grid(self, scene: str, floor: int) -> FloorGrid:
         """The newest grid of a floor. NotFound for an unknown scene or floor."""

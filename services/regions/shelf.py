@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import zlib
+from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -102,6 +103,18 @@ class Shelf:
         """The newest partition; revision 0 and nothing in it before the first."""
         index = await self._index(scene)
         return await self._partition(index["partition"]) if index else Cut.none().partition
+
+    async def newest_entry(self, scene: str) -> str:
+        """Id of the newest entry of the regions log; the start of the log before the first."""
+        newest = await self._store.newest(scene, REGIONS)
+        return newest[0].id if newest else START
+
+    async def partitions(self, scene: str, after: str) -> AsyncIterator[Partition]:
+        """Partitions of the regions log after an entry, then each new one, for ever."""
+        while True:
+            for entry in await self._store.read(scene, REGIONS, after, block_ms=1000):
+                after = entry.id
+                yield await self._partition(entry.fields["partition"].decode())
 
     async def grid(self, scene: str, floor: int) -> FloorGrid:
         """The newest grid of a floor. Raises NotFound where there is none."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -55,6 +56,25 @@ async def test_a_scene_without_a_partition_answers_with_an_empty_one(store: Stor
     await store.add_scene(SCENE)
     async with serve(settings(tmp_path), store) as port, connect(f"127.0.0.1:{port}") as channel:
         assert (await RegionsClient(channel).get_partition(SCENE)).revision == 0
+
+
+async def test_a_watcher_gets_the_newest_partition_and_then_each_new_one(
+    store: Store, tmp_path: Path
+) -> None:
+    await store.add_scene(SCENE)
+    lease = await store.acquire_lease(SCENE, STAGE, "test", 30.0)
+    assert lease is not None
+    first = cut_of(two_rooms())
+    later = replace(first, partition=replace(first.partition, revision=first.partition.revision + 1))
+    await Shelf(store).save_answered(lease, 1, Answered(first, "0-0", 0))
+    async with serve(settings(tmp_path), store) as port, connect(f"127.0.0.1:{port}") as channel:
+        client = RegionsClient(channel)
+        watched = client.watch(SCENE)
+        assert (await anext(watched)).revision == first.partition.revision
+        await Shelf(store).save_answered(lease, 2, Answered(later, "0-0", 0))
+        assert (await anext(watched)).revision == later.partition.revision
+        with pytest.raises(NotFound, match="attic"):
+            await anext(client.watch("attic"))
 
 
 def test_the_papers_numbers_are_the_defaults_and_the_relief_is_ours(monkeypatch: pytest.MonkeyPatch) -> None:
