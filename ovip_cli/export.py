@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
+from urllib.parse import quote
 
 import httpx
 import typer
@@ -47,12 +48,13 @@ def export(
 
 def _download(addresses: Addresses, scene: str, format: Format) -> bytes:
     headers = {"authorization": f"Bearer {addresses.api_key}"} if addresses.api_key else {}
-    url = f"http://{addresses.api}/v1/scenes/{scene}/exports/{_PATHS[format]}"
+    url = f"http://{addresses.api}/v1/scenes/{quote(scene, safe="")}/exports/{_PATHS[format]}"
     try:
         reply = httpx.get(url, headers=headers, timeout=120.0, trust_env=False)
     except httpx.HTTPError as error:
         raise Unavailable(f"the api at {addresses.api} cannot be reached: {error}") from error
     if reply.is_error:
         problem = reply.json() if "json" in reply.headers.get("content-type", "") else {}
-        raise from_status("", str(problem.get("detail", reply.reason_phrase)), str(problem.get("type", "")))
+        slug = str(problem.get("type", "")).rpartition(":")[2]
+        raise from_status("UNKNOWN", str(problem.get("detail", reply.reason_phrase)), slug)
     return reply.content

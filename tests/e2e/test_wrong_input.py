@@ -95,3 +95,11 @@ def test_one_service_alone_without_models_says_how_to_get_them(cli: Cli, tmp_pat
         timeout=60,
     )
     assert "ovip models pull embedded" in refused(done)
+
+
+def test_an_export_of_an_unknown_scene_writes_nothing(cli: Cli, tmp_path: Path) -> None:
+    target = tmp_path / "scene.ply"
+    words = ("export", "--scene", "attic", "--format", "ply", "-o", target)
+    line = refused(cli.run(*words, "--standalone", "--data-dir", tmp_path / "data"))
+    assert line.startswith("ovip: scene 'attic'")
+    assert not target.exists()
