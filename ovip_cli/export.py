@@ -48,7 +48,7 @@ def export(
 
 def _download(addresses: Addresses, scene: str, format: Format) -> bytes:
     headers = {"authorization": f"Bearer {addresses.api_key}"} if addresses.api_key else {}
-    url = f"http://{addresses.api}/v1/scenes/{quote(scene, safe="")}/exports/{_PATHS[format]}"
+    url = f"http://{addresses.api}/v1/scenes/{quote(scene, safe='')}/exports/{_PATHS[format]}"
     try:
         reply = httpx.get(url, headers=headers, timeout=120.0, trust_env=False)
     except httpx.HTTPError as error:

@@ -75,10 +75,11 @@ async def test_a_stored_search_goes_on_after_the_robot_was_lost(client: AsyncCli
             raise LostError
         return await robot.look(viewpoint)
 
-    search_id = ""
+    ids = []
     with pytest.raises(LostError):
         async for search_id, _ in client.retrieval.search(query, look_twice):  # type: ignore[arg-type]
-            pass
+            ids.append(search_id)
+    search_id = ids[-1]
     resumed_id, answer = await client.search(f"{SCENE}/{search_id}", robot.look)
     assert resumed_id == search_id
     assert answer.outcome is Outcome.FOUND
