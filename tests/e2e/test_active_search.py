@@ -90,7 +90,7 @@ async def test_what_is_nowhere_is_absent_once_everything_was_looked_at(client: A
     assert (answer.outcome, answer.tier) == (Outcome.ABSENT, 4)
     assert answer.object is None
     assert answer.coverage is not None
-    # where frames of earlier searches are still being mapped, the plan may hold places that the robot cannot reach
+    # after earlier searches the plan may hold a place whose way the robot finds blocked: it must be accounted for
     assert answer.coverage.visited + answer.coverage.unreachable == answer.coverage.planned
     assert answer.coverage.complete is (answer.coverage.unreachable == 0)
     assert answer.coverage.visited > 2 * answer.coverage.planned / 3
