@@ -9,4 +9,4 @@ compile=(.venv/bin/uv pip compile pyproject.toml --quiet --system-certs --univer
     --fork-strategy fewest --constraints constraints/lock.txt --generate-hashes
     --no-emit-index-url --no-emit-find-links --no-annotate --no-header "$@")
 "${compile[@]}" --extra embedded --output-file requirements.lock >/dev/null
-"${compile[@]}" --extra embedded --extra dev --constraints requirements.lock --output-file requirements-dev.lock >/dev/null
+"${compile[@]}" --extra embedded --extra lab --extra ros --extra dev --constraints requirements.lock --output-file requirements-dev.lock >/dev/null

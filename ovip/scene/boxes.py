@@ -32,6 +32,20 @@ def pairwise_iou(a: F64, b: F64) -> F64:
     return np.divide(shared, union, out=np.zeros_like(shared), where=union > 0)
 
 
+def pairwise_giou(a: F64, b: F64) -> F64:
+    """Generalised IoU of `(M, 6)` and `(N, 6)` boxes -> `(M, N)` in (-1, 1] (Rezatofighi et al. 2019).
+
+    IoU - (hull - union) / hull, hull the volume of the box around both; IoU where the hull is empty.
+    """
+    shared = pairwise_intersection(a, b)
+    union = volume(a)[:, None] + volume(b)[None, :] - shared
+    low = np.minimum(a[:, None, :3], b[None, :, :3])
+    high = np.maximum(a[:, None, 3:], b[None, :, 3:])
+    hull = np.asarray(np.prod(high - low, axis=2), np.float64)
+    missing = np.divide(hull - union, hull, out=np.zeros_like(hull), where=hull > 0)
+    return pairwise_iou(a, b) - np.maximum(missing, 0.0)  # rounding must not make a pair better than its IoU
+
+
 def touching(box: F64, boxes: F64) -> npt.NDArray[np.bool_]:
     """Which of `(N, 6)` boxes share a volume with `box` `(6,)` -> `(N,)`."""
     return np.asarray(((boxes[:, :3] < box[3:]) & (boxes[:, 3:] > box[:3])).all(axis=1))

@@ -6,7 +6,9 @@ from pydantic import Field
 
 from ovip.config import KernelSettings
 from services.mapper.domain.association import AssociationParams
+from services.mapper.domain.fusion import FusionParams, Weighting
 from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.spatial import Spatial
 from services.mapper.domain.upkeep import UpkeepParams
 
 _UPKEEP = UpkeepParams()
@@ -26,6 +28,12 @@ class Settings(KernelSettings):
     label_penalty: float = Field(
         _ASSOCIATION.label_penalty, ge=0, description="what a differing label costs (paper's w_L: 0.5)"
     )
+    spatial: Spatial = Field(
+        _ASSOCIATION.spatial, description="spatial term of the score: iou (the paper's), giou or overlap"
+    )
+    fusion: Weighting = Field(
+        FusionParams().weighting, description="what a view weighs: view-area (the paper's), area or count"
+    )
     upkeep_every: int = Field(_UPKEEP.every, ge=1, description="detection batches between upkeeps")
     confirm_frames: int = Field(
         _UPKEEP.confirm_frames, ge=1, description="frames that must see an object to believe it"
@@ -40,6 +48,7 @@ class Settings(KernelSettings):
     def map_params(self) -> MapParams:
         """The numbers that the domain takes."""
         return MapParams(
-            association=AssociationParams(self.alpha, self.label_penalty, self.tau),
+            association=AssociationParams(self.alpha, self.label_penalty, self.tau, self.spatial),
+            fusion=FusionParams(weighting=self.fusion),
             upkeep=UpkeepParams(every=self.upkeep_every, confirm_frames=self.confirm_frames),
         )

@@ -7,44 +7,63 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ovip.scene.boxes import pairwise_iou, touching
+from ovip.scene.boxes import touching
 from ovip.scene.types import F32, F64, I64
+from services.mapper.domain.spatial import Spatial, spatial_scores
 
 NEW = -1
 
 
 @dataclass(frozen=True, slots=True)
 class AssociationParams:
-    """alpha, label_penalty (w_L): the paper's "Models and hyperparameters" table.
+    """alpha, label_penalty (w_L): the paper's "Models and hyperparameters" table; a penalty of 0 is label-agnostic.
 
     tau: a detection joins an object whose score exceeds it. The paper gives no number; 1.05 lets a detection of
     the same label and like feature (cosine near 1) join from a small overlap on, and lets no other-label pair join.
+    spatial: the paper's is IoU; the others are ablations.
     """
 
     alpha: float = 0.0
     label_penalty: float = 0.5
     tau: float = 1.05
+    spatial: Spatial = Spatial.IOU
 
 
-def association_scores(
-    boxes: F64,
-    features: F32,
-    labels: Sequence[str],
-    object_boxes: F64,
-    object_features: F32,
-    object_labels: Sequence[str],
-    params: AssociationParams,
-) -> F64:
+@dataclass(frozen=True, slots=True, eq=False)
+class Instances:
+    """N detections of a frame, or N objects of the map, as association compares them.
+
+    boxes `(N, 6)`; features `(N, D)` unit; labels: a detection's, or an object's majority label mode(C_j).
+    clouds: `(P, 3)` points of each; may be left out unless the spatial term is `overlap`.
+    """
+
+    boxes: F64
+    features: F32
+    labels: Sequence[str]
+    clouds: Sequence[F32] = ()
+
+    def at(self, index: Sequence[int] | I64) -> Instances:
+        """Only those at `index`."""
+        return Instances(
+            self.boxes[index],
+            self.features[index],
+            [self.labels[int(i)] for i in index],
+            [self.clouds[int(i)] for i in index] if self.clouds else (),
+        )
+
+
+def association_scores(detections: Instances, objects: Instances, params: AssociationParams) -> F64:
     """phi_ij of M detections against N objects -> `(M, N)`.
 
     phi_ij = (1 + a) IoU(b_i, B_j) + (1 - a) cos(f_i, g_j) - w_L [label_i != mode(C_j)]
-
-    boxes `(M, 6)`, features `(M, D)` unit; object_boxes `(N, 6)`, object_features `(N, D)` unit.
     """
-    iou = pairwise_iou(boxes, object_boxes)
-    cosine = _cosines(features, object_features)
-    differs = np.array([[a != b for b in object_labels] for a in labels], dtype=np.float64).reshape(iou.shape)
-    return (1 + params.alpha) * iou + (1 - params.alpha) * cosine - params.label_penalty * differs
+    spatial = spatial_scores(
+        params.spatial, detections.boxes, objects.boxes, detections.clouds, objects.clouds
+    )
+    cosine = _cosines(detections.features, objects.features)
+    differs = np.array([[a != b for b in objects.labels] for a in detections.labels], dtype=np.float64)
+    penalty = params.label_penalty * differs.reshape(spatial.shape)
+    return (1 + params.alpha) * spatial + (1 - params.alpha) * cosine - penalty
 
 
 def associate_dense(scores: F64, tau: float) -> I64:
@@ -55,37 +74,19 @@ def associate_dense(scores: F64, tau: float) -> I64:
     return np.where(scores[np.arange(len(best)), best] > tau, best, NEW)
 
 
-def associate(
-    boxes: F64,
-    features: F32,
-    labels: Sequence[str],
-    object_boxes: F64,
-    object_features: F32,
-    object_labels: Sequence[str],
-    params: AssociationParams,
-) -> I64:
+def associate(detections: Instances, objects: Instances, params: AssociationParams) -> I64:
     """The same assignment as `associate_dense(association_scores(...))`, scoring only objects that can win.
 
-    An object whose box shares no volume with b_i has IoU 0 and can score at most (1 - a). Where that is <= tau it
-    never wins, so only touching boxes are scored (SPEC 2.2); where tau < (1 - a) every object is.
+    An object whose box shares no volume with b_i has a spatial score of at most 0 and can score at most (1 - a).
+    Where that is <= tau it never wins, so only touching boxes are scored (SPEC 2.2); where tau < (1 - a) every
+    object is.
     """
     if 1 - params.alpha > params.tau:
-        return associate_dense(
-            association_scores(boxes, features, labels, object_boxes, object_features, object_labels, params),
-            params.tau,
-        )
-    assigned = np.full(len(boxes), NEW, np.int64)
-    for i in range(len(boxes)):
-        near = np.flatnonzero(touching(boxes[i], object_boxes))
-        scores = association_scores(
-            boxes[i : i + 1],
-            features[i : i + 1],
-            labels[i : i + 1],
-            object_boxes[near],
-            object_features[near],
-            [object_labels[int(j)] for j in near],
-            params,
-        )
+        return associate_dense(association_scores(detections, objects, params), params.tau)
+    assigned = np.full(len(detections.boxes), NEW, np.int64)
+    for i in range(len(assigned)):
+        near = np.flatnonzero(touching(detections.boxes[i], objects.boxes))
+        scores = association_scores(detections.at([i]), objects.at(near), params)
         best = associate_dense(scores, params.tau)[0]
         assigned[i] = near[best] if best != NEW else NEW
     return assigned

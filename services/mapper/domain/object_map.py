@@ -14,9 +14,10 @@ import numpy as np
 from ovip.errors import Corrupt, InvalidInput
 from ovip.scene.boxes import touching
 from ovip.scene.types import F32, F64, I64, U8, Box2, Detection, DetectionBatch, MapDelta, MapObject
-from services.mapper.domain.association import NEW, AssociationParams, associate
+from services.mapper.domain.association import NEW, AssociationParams, Instances, associate
 from services.mapper.domain.cloud import VoxelCloud
-from services.mapper.domain.fusion import FusionParams, view_weight
+from services.mapper.domain.fusion import FusionParams, fusion_weight
+from services.mapper.domain.spatial import Spatial
 from services.mapper.domain.upkeep import UpkeepParams, denoised, inside, overlap
 
 SNAPSHOT_FORMAT = 1
@@ -95,21 +96,44 @@ class ObjectMap:
         self.frames += not batch.late
         self.detections += len(batch.detections)
         created, updated = self._fuse_batch(batch)
-        aliases = self._merge_duplicates(created | updated)
+        aliases = self._merge_duplicates(created | updated) if self.params.upkeep.eager else {}
         removed: list[str] = []
         if self._batches % self.params.upkeep.every == 0:
-            updated |= self._denoise()
-            aliases |= self._merge_duplicates(self._dirty)
-            removed = self._forget()
-            self._dirty.clear()
-        updated |= {self.resolve(survivor) for survivor in aliases.values()}
+            updated, aliases, removed = self._keep_up(updated, aliases)
+        return self._delta(batch.frame_id, created, updated, aliases, removed)
+
+    def settle(self) -> MapDelta:
+        """Upkeep of what changed since the last one, as after the last frame of a recording (SPEC 2.6). One version."""
+        self.version += 1
+        updated, aliases, removed = self._keep_up(set(), {})
+        return self._delta("", set(), updated, aliases, removed)
+
+    def _keep_up(
+        self, updated: set[str], aliases: dict[str, str]
+    ) -> tuple[set[str], dict[str, str], list[str]]:
+        updated = updated | self._denoise()
+        aliases = aliases | self._merge_duplicates(self._dirty)
+        removed = self._forget()
+        self._dirty.clear()
+        return updated, aliases, removed
+
+    def _delta(
+        self,
+        frame_id: str,
+        created: set[str],
+        updated: set[str],
+        aliases: dict[str, str],
+        removed: list[str],
+    ) -> MapDelta:
+        """What changed, and the new version written on it."""
+        updated = updated | {self.resolve(survivor) for survivor in aliases.values()}
         for object_id in created | updated:
             if object_id in self._objects:
                 self._objects[object_id].version = self.version
         gone = set(removed) | set(aliases)
         return MapDelta(
             version=self.version,
-            frame_id=batch.frame_id,
+            frame_id=frame_id,
             created=tuple(sorted(created - gone)),
             updated=tuple(sorted(updated - created - gone)),
             removed=tuple(sorted(removed)),
@@ -220,12 +244,18 @@ class ObjectMap:
         if not detections:
             return set(), set()
         assigned = associate(
-            np.stack([d.box for d in detections]),
-            np.stack([d.feature for d in detections]),
-            [d.label for d in detections],
-            np.array([o.box for o in objects]).reshape(-1, 6),
-            np.array([o.feature for o in objects], np.float32).reshape(-1, self._dimension or 0),
-            [o.label for o in objects],
+            Instances(
+                np.stack([d.box for d in detections]),
+                np.stack([d.feature for d in detections]),
+                [d.label for d in detections],
+                [d.points for d in detections],
+            ),
+            Instances(
+                np.array([o.box for o in objects]).reshape(-1, 6),
+                np.array([o.feature for o in objects], np.float32).reshape(-1, self._dimension or 0),
+                [o.label for o in objects],
+                [o.cloud.points for o in objects] if self._compares_clouds else (),
+            ),
             self.params.association,
         )
         created, updated = set(), set()
@@ -237,8 +267,12 @@ class ObjectMap:
         self._dirty |= created | updated
         return created, updated
 
+    @property
+    def _compares_clouds(self) -> bool:
+        return self.params.association.spatial is Spatial.OVERLAP
+
     def _create(self, detection: Detection, batch: DetectionBatch) -> str:
-        weight = view_weight(
+        weight = fusion_weight(
             detection.box2, batch.intrinsics.width, batch.intrinsics.height, self.params.fusion
         )
         cloud = VoxelCloud.of(detection.points, detection.colors, self.params.voxel)
@@ -266,7 +300,7 @@ class ObjectMap:
 
     def _merge_detection(self, o: _Object, detection: Detection, batch: DetectionBatch) -> str:
         """S_j += w_k f_k; Omega_j += w_k; C_j gains the label; voxel sums add (Eq. 4, SPEC 2.4)."""
-        weight = view_weight(
+        weight = fusion_weight(
             detection.box2, batch.intrinsics.width, batch.intrinsics.height, self.params.fusion
         )
         o.feature_sum = o.feature_sum + weight * detection.feature.astype(np.float64)
@@ -316,9 +350,11 @@ class ObjectMap:
         return (-self._objects[object_id].frames, object_id)
 
     def _twin_of(self, o: _Object) -> str | None:
-        """The first object of the same label and like feature in the same place."""
+        """The first object of like feature, and label where that counts, in the same place."""
         upkeep = self.params.upkeep
-        others = [p for p in self._objects.values() if p is not o and p.label == o.label]
+        others = [
+            p for p in self._objects.values() if p is not o and (p.label == o.label or not upkeep.same_label)
+        ]
         if not others:
             return None
         slack = np.array([-upkeep.reach] * 3 + [upkeep.reach] * 3)

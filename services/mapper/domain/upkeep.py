@@ -19,9 +19,10 @@ class UpkeepParams:
 
     merge_inside: share of the smaller box's volume inside the other's, which decides where the clouds show opposite
     sides of a small thing and do not touch.
-    merge_similarity: cosine that two objects to merge must have, besides the same majority label.
-    reach: metres within which a point lies on another cloud. confirm_frames: frames that must see an object before
-    readers get it. forget_after: batches without a view after which an unconfirmed object is dropped.
+    merge_similarity: cosine that two objects to merge must have.
+    eager: merge what a batch made one at once, not at the next upkeep only. same_label: merge only objects of one
+    majority label. reach: metres within which a point lies on another cloud. confirm_frames: frames that must see an
+    object before readers get it. forget_after: batches without a view after which an unconfirmed object is dropped.
     cluster_radius: metres between voxels of one cluster; smaller clusters than `cluster_share` of the largest go.
     """
 
@@ -34,6 +35,8 @@ class UpkeepParams:
     forget_after: int = 60
     cluster_radius: float = 0.08
     cluster_share: float = 0.25
+    eager: bool = True
+    same_label: bool = True
 
 
 def denoised(cloud: VoxelCloud, params: UpkeepParams) -> VoxelCloud:

@@ -8,7 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from ovip.scene.boxes import box_of, pairwise_intersection, pairwise_iou, touching, transformed_bounds, volume
+from ovip.scene.boxes import (
+    box_of,
+    pairwise_giou,
+    pairwise_intersection,
+    pairwise_iou,
+    touching,
+    transformed_bounds,
+    volume,
+)
 from ovip.scene.types import F64
 from tests.builders import pose
 
@@ -122,3 +130,19 @@ def test_transformed_bounds_hold_every_transformed_point(
 
     assert (moved >= bounds[:3] - 1e-9).all()
     assert (moved <= bounds[3:] + 1e-9).all()
+
+
+def test_giou_by_hand() -> None:
+    """Shifted by half: IoU 4/12, the hull holds 3*2*2 = 12 = the union. Far: union 9, hull 6^3 = 216."""
+    boxes = np.stack([CUBE, SHIFTED, FAR])
+
+    assert pairwise_giou(CUBE[None], boxes)[0] == pytest.approx([1.0, 4 / 12, -(216 - 9) / 216])
+
+
+@given(box_lists(), box_lists())
+def test_giou_is_symmetric_and_never_above_iou(a: F64, b: F64) -> None:
+    giou = pairwise_giou(a, b)
+
+    assert giou.shape == (len(a), len(b))
+    assert (giou <= pairwise_iou(a, b)).all()
+    np.testing.assert_allclose(giou, pairwise_giou(b, a).T, rtol=1e-9, atol=1e-12)

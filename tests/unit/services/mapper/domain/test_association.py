@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ovip.scene.boxes import box_of
 from ovip.scene.features import normalize
 from ovip.scene.types import F32, F64
 from services.mapper.domain.association import (
     NEW,
     AssociationParams,
+    Instances,
     associate,
     associate_dense,
     association_scores,
 )
+from services.mapper.domain.spatial import Spatial
 from tests.builders import axis, leaning
 
 PAPER = AssociationParams()
@@ -29,7 +30,9 @@ FAR = np.array([[5.0, 5, 5, 6, 6, 6]])
 def _score(box: F64, feature: F32, label: str, object_box: F64, params: AssociationParams = PAPER) -> float:
     """Against one object: a cup along feature axis 0."""
     return float(
-        association_scores(box, feature[None], [label], object_box, axis(0)[None], ["cup"], params)[0, 0]
+        association_scores(
+            Instances(box, feature[None], [label]), Instances(object_box, axis(0)[None], ["cup"]), params
+        )[0, 0]
     )
 
 
@@ -63,12 +66,12 @@ def test_opposite_features_count_against() -> None:
 
 def test_scores_are_one_row_a_detection_and_one_column_an_object() -> None:
     scores = association_scores(
-        np.concatenate([BOX, FAR]),
-        np.stack([axis(0), axis(1)]),
-        ["cup", "lamp"],
-        np.concatenate([BOX, HALF, FAR]),
-        np.stack([axis(0), axis(0), axis(1)]),
-        ["cup", "mug", "lamp"],
+        Instances(np.concatenate([BOX, FAR]), np.stack([axis(0), axis(1)]), ["cup", "lamp"]),
+        Instances(
+            np.concatenate([BOX, HALF, FAR]),
+            np.stack([axis(0), axis(0), axis(1)]),
+            ["cup", "mug", "lamp"],
+        ),
         PAPER,
     )
 
@@ -89,10 +92,11 @@ def test_ties_go_to_the_older_object() -> None:
 
 
 def test_an_empty_map_and_an_empty_frame_assign_nothing() -> None:
-    none, no_feature = np.zeros((0, 6)), np.zeros((0, 8), np.float32)
+    none = Instances(np.zeros((0, 6)), np.zeros((0, 8), np.float32), [])
+    cup = Instances(BOX, axis(0)[None], ["cup"])
 
-    assert associate(BOX, axis(0)[None], ["cup"], none, no_feature, [], PAPER).tolist() == [NEW]
-    assert associate(none, no_feature, [], BOX, axis(0)[None], ["cup"], PAPER).tolist() == []
+    assert associate(cup, none, PAPER).tolist() == [NEW]
+    assert associate(none, cup, PAPER).tolist() == []
     assert associate_dense(np.zeros((2, 0)), 1.05).tolist() == [NEW, NEW]
 
 
@@ -106,13 +110,15 @@ def test_a_detection_among_equal_objects_joins_the_oldest(copies: int) -> None:
     for tau in (1.05, 0.2):
         params = AssociationParams(tau=tau)
         assigned = associate(
-            np.tile(BOX, (20, 1)), features, ["cup"] * 20, boxes, same, ["cup"] * copies, params
+            Instances(np.tile(BOX, (20, 1)), features, ["cup"] * 20),
+            Instances(boxes, same, ["cup"] * copies),
+            params,
         )
         assert set(assigned.tolist()) <= {0, NEW}
 
 
 @st.composite
-def frames_and_maps(draw: st.DrawFn) -> dict[str, Any]:
+def frames_and_maps(draw: st.DrawFn) -> tuple[Instances, Instances]:
     """Random detections and objects on a coarse lattice, so that equal, touching and nested ones are common."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     m, n, d = draw(st.integers(0, 6)), draw(st.integers(0, 12)), draw(st.sampled_from([2, 3, 384]))
@@ -129,57 +135,78 @@ def frames_and_maps(draw: st.DrawFn) -> dict[str, Any]:
     def labels(count: int) -> list[str]:
         return [str(word) for word in rng.choice(["cup", "mug"], count)]
 
-    return {
-        "boxes": boxes(m),
-        "features": features(m),
-        "labels": labels(m),
-        "object_boxes": boxes(n),
-        "object_features": features(n),
-        "object_labels": labels(n),
-    }
+    def clouds(count: int) -> list[F32]:
+        return [rng.uniform(0, 4, (5, 3)).round(2).astype(np.float32) for _ in range(count)]
+
+    return (
+        Instances(boxes(m), features(m), labels(m), clouds(m)),
+        Instances(boxes(n), features(n), labels(n), clouds(n)),
+    )
 
 
 ALPHAS = st.sampled_from([-1.0, -0.5, 0.0, 0.3, 1.0])
 TAUS = st.one_of(st.sampled_from([0.0, 0.5, 1.0, 1.05, 1.5]), st.floats(-1, 2.5))
 
 
-@given(frames_and_maps(), ALPHAS, TAUS, st.sampled_from([0.0, 0.5, 2.0]))
-@settings(max_examples=300)
+KINDS = st.sampled_from(Spatial)
+
+
+@given(frames_and_maps(), ALPHAS, TAUS, st.sampled_from([0.0, 0.5, 2.0]), KINDS)
+@settings(max_examples=400)
 def test_pruning_never_changes_an_assignment(
-    case: dict[str, Any], alpha: float, tau: float, penalty: float
+    case: tuple[Instances, Instances], alpha: float, tau: float, penalty: float, spatial: Spatial
 ) -> None:
-    params = AssociationParams(alpha, penalty, tau)
+    params = AssociationParams(alpha, penalty, tau, spatial)
 
-    pruned = associate(**case, params=params)
+    pruned = associate(*case, params)
 
-    assert pruned.tolist() == associate_dense(association_scores(**case, params=params), tau).tolist()
+    assert pruned.tolist() == associate_dense(association_scores(*case, params), tau).tolist()
 
 
-@given(frames_and_maps(), ALPHAS, st.sampled_from([0.0, 0.5]))
+@given(frames_and_maps(), ALPHAS, st.sampled_from([0.0, 0.5]), KINDS)
 def test_pruning_holds_where_tau_is_just_what_features_alone_can_reach(
-    case: dict[str, Any], alpha: float, penalty: float
+    case: tuple[Instances, Instances], alpha: float, penalty: float, spatial: Spatial
 ) -> None:
     """tau = 1 - a: equal features score exactly tau, which does not win, however they round."""
-    params = AssociationParams(alpha, penalty, 1 - alpha)
+    params = AssociationParams(alpha, penalty, 1 - alpha, spatial)
 
-    pruned = associate(**case, params=params)
+    pruned = associate(*case, params)
 
-    assert pruned.tolist() == associate_dense(association_scores(**case, params=params), params.tau).tolist()
+    assert pruned.tolist() == associate_dense(association_scores(*case, params), params.tau).tolist()
 
 
-@given(frames_and_maps(), ALPHAS, TAUS)
+@given(frames_and_maps(), ALPHAS, TAUS, KINDS)
 def test_each_detection_is_assigned_as_if_it_were_alone_in_its_frame(
-    case: dict[str, Any], alpha: float, tau: float
+    case: tuple[Instances, Instances], alpha: float, tau: float, spatial: Spatial
 ) -> None:
-    params = AssociationParams(alpha, 0.5, tau)
-    together = associate(**case, params=params)
+    detections, objects = case
+    params = AssociationParams(alpha, 0.5, tau, spatial)
+    together = associate(detections, objects, params)
     for i in range(len(together)):
-        alone = {k: v if k.startswith("object") else v[i : i + 1] for k, v in case.items()}
-        assert associate(**alone, params=params).tolist() == [together[i]]
+        assert associate(detections.at([i]), objects, params).tolist() == [together[i]]
 
 
 def test_where_features_alone_can_reach_tau_a_distant_object_is_joined() -> None:
     """tau 0.8 < 1 - a = 1: looks alone suffice, as the equation says."""
-    assigned = associate(BOX, axis(0)[None], ["cup"], FAR, axis(0)[None], ["cup"], AssociationParams(tau=0.8))
+    cup, far = Instances(BOX, axis(0)[None], ["cup"]), Instances(FAR, axis(0)[None], ["cup"])
 
-    assert assigned.tolist() == [0]
+    assert associate(cup, far, AssociationParams(tau=0.8)).tolist() == [0]
+
+
+# What the symmetric term is for
+
+
+def test_a_cup_on_a_table_joins_the_table_by_overlap_and_stays_itself_by_iou() -> None:
+    """The cup's foot and the table under it, 12 of its 16 points on the table: 12/16 + cos 0.6 > 1.2; IoU is ~0."""
+    x, y = np.meshgrid(np.arange(0, 1, 0.02), np.arange(0, 1, 0.02))
+    table = np.stack([x.ravel(), y.ravel(), np.full(x.size, 0.7)], axis=1).astype(np.float32)
+    cup = np.array([[0.5 + 0.02 * i, 0.5, 0.7 + 0.1 * (i >= 12)] for i in range(16)], dtype=np.float32)
+    one = Instances(box_of(cup)[None] + [0, -0.01, 0, 0, 0.01, 0], leaning(0, 1, 0.6)[None], ["cup"], [cup])
+    other = Instances(box_of(table)[None] + [0, 0, -0.01, 0, 0, 0.01], axis(0)[None], ["table"], [table])
+
+    overlap = AssociationParams(label_penalty=0, tau=1.2, spatial=Spatial.OVERLAP)
+    iou = AssociationParams(label_penalty=0, tau=1.2)
+
+    assert association_scores(one, other, overlap)[0, 0] == pytest.approx(0.75 + 0.6, abs=1e-6)
+    assert associate(one, other, overlap).tolist() == [0]
+    assert associate(one, other, iou).tolist() == [NEW]

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from ovip.errors import Corrupt, InvalidInput
 from ovip.scene.types import Box2, Detection, DetectionBatch, MapDelta, MapObject
 from services.mapper.domain.association import AssociationParams
-from services.mapper.domain.fusion import FusionParams, view_weight
+from services.mapper.domain.fusion import view_weight
 from services.mapper.domain.object_map import MapParams, ObjectMap
 from services.mapper.domain.upkeep import UpkeepParams
 from tests.builders import SECOND, axis, batch, camera, detection, leaning, random_run, same
@@ -134,8 +134,8 @@ def test_an_empty_map_shows_nothing() -> None:
 def test_features_fuse_by_view_weight_by_hand() -> None:
     """Eq. 4: S = w1 f1 + w2 f2, Omega = w1 + w2, g = S/|S|."""
     large, small = Box2(16, 12, 48, 36), Box2(0, 0, 16, 12)
-    w1 = view_weight(large, K.width, K.height, FusionParams())
-    w2 = view_weight(small, K.width, K.height, FusionParams())
+    w1 = view_weight(large, K.width, K.height, 0.6)
+    w2 = view_weight(small, K.width, K.height, 0.6)
     f1, f2 = axis(0), leaning(0, 1, 0.6)
 
     made = _map_of(
@@ -258,6 +258,22 @@ def test_parts_that_grow_together_merge_and_the_one_seen_more_often_stays() -> N
     assert table.version == 5
 
 
+def test_settling_does_what_the_next_upkeep_would_and_only_once() -> None:
+    """Merging waits for upkeep; two halves of a table that a third view joins merge when the map settles."""
+    patient = MapParams(upkeep=UpkeepParams(every=100, confirm_frames=1, eager=False))
+    parts = [batch(1, _long_table(0, 1)), batch(2, _long_table(1.02, 2)), batch(3, _long_table(0.4, 1.6))]
+    made = _map_of(*parts, params=patient)
+    before = made.version
+    assert len(made.objects()) == 2
+
+    delta = made.settle()
+
+    assert (delta.version, delta.frame_id, delta.aliases) == (before + 1, "", {"o000002": "o000001"})
+    assert delta.updated == ("o000001",)
+    assert len(made.objects()) == 1
+    assert made.settle() == MapDelta(before + 2, "")
+
+
 def test_an_id_merged_away_still_finds_its_survivor_through_a_chain() -> None:
     made = _map_of(
         batch(1, _long_table(0, 1)),
@@ -282,7 +298,7 @@ def test_merging_adds_the_accumulators() -> None:
     made = _map_of(*parts)
 
     (table,) = made.objects()
-    weight = view_weight(parts[0].detections[0].box2, K.width, K.height, FusionParams())
+    weight = view_weight(parts[0].detections[0].box2, K.width, K.height, 0.6)
     assert table.view_weight == pytest.approx(3 * weight)
     assert table.label_counts == {"table": 3}
     assert (table.first_seen_ns, table.last_seen_ns) == (1 * SECOND, 3 * SECOND)
@@ -421,7 +437,7 @@ def test_ids_are_never_reused_and_no_view_is_lost(seed: int) -> None:
     objects: Sequence[MapObject] = made.objects(include_unconfirmed=True)
     assert sum(o.observations for o in objects) == sum(len(one.detections) for one in run) == made.detections
     assert sum(sum(o.label_counts.values()) for o in objects) == made.detections
-    weights = [view_weight(d.box2, K.width, K.height, FusionParams()) for one in run for d in one.detections]
+    weights = [view_weight(d.box2, K.width, K.height, 0.6) for one in run for d in one.detections]
     assert sum(o.view_weight for o in objects) == pytest.approx(sum(weights))
 
 
