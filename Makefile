@@ -1,6 +1,6 @@
 # Everything a person or CI does with this checkout. `make help` lists it.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check bench bench-install format proto proto-release lock dev browser \
+.PHONY: help setup demo test check bench bench-install lab eval format proto proto-release lock dev browser \
         check-format check-lint check-types check-imports check-proto check-lock clean
 MAKEFLAGS += --no-print-directory
 bin := .venv/bin
@@ -14,7 +14,7 @@ setup:  ## make .venv and the model cache ready (quick when they are)
 demo: setup  ## map a recording or a simulated room, ask five questions, leave the dashboard up (DEMO_EXIT=1: end)
 	@$(bin)/python -m lab.demo
 
-test: dev browser  ## run the tests (PYTEST_ARGS="-k kitchen" and the like)
+test: lab browser  ## run the tests (PYTEST_ARGS="-k kitchen" and the like)
 	@$(bin)/python -m pytest -n 2 --dist loadfile $(PYTEST_ARGS)
 
 check: check-lock check-format check-lint check-types check-imports check-proto  ## format, lint, types, layers, API
@@ -22,6 +22,12 @@ check: check-lock check-format check-lint check-types check-imports check-proto 
 
 bench: setup  ## measure ingest, perception, answers and the start of a stack (BENCH_ARGS="tier1 --json")
 	@$(bin)/ovip bench $(BENCH_ARGS)
+
+lab: dev  ## make the lab ready: Open3D, furniture models and example homes (composed shapes where not to be had)
+	@scripts/lab.sh
+
+eval: lab  ## run a protocol of the paper (EVAL_ARGS="ablation --homes 6 --json")
+	@$(bin)/ovip eval $(EVAL_ARGS)
 
 bench-install:  ## measure an install from nothing against its budget of 90 s and 900 MB
 	@scripts/measure-install.sh

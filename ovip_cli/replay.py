@@ -14,25 +14,29 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from ovip.client import Addresses, AsyncClient, StreamReport
 from ovip.client.replaying import hello_of, outgoing
 from ovip.client.streaming import StreamEvent
-from ovip.recordings import LAYOUTS, Recording, open_recording, parse_up
+from ovip.recordings import LAYOUTS, Recording, open_recording, parse_options, parse_up
 from ovip.scene.answers import PerceptionStatus
 from ovip.scene.types import SceneMap
+from ovip_cli.recordings import OptionWords, Stride, UpWord
 from ovip_cli.stacks import DataDir, Json, Scene, Standalone, print_json, stack_for
 
 
 def replay(
-    path: Annotated[Path, typer.Argument(help="folder of the recording")],
+    path: Annotated[Path, typer.Argument(help="the recording: a folder, or a bag file")],
     scene: Scene,
     layout: Annotated[str, typer.Option(help=f"how the folder is laid out: {', '.join(LAYOUTS)}")] = "ovip",
-    up: Annotated[str | None, typer.Option(help="up in the recording's own frame: x,y,z or auto")] = None,
-    stride: Annotated[int, typer.Option(help="take every n-th frame")] = 1,
+    up: UpWord = None,
+    option: OptionWords = None,
+    stride: Stride = 1,
     robot: Annotated[str, typer.Option(help="robot id to stream as")] = "replay",
     standalone: Standalone = False,
     data_dir: DataDir = None,
     json: Json = False,
 ) -> None:
     """Stream a recording; the same recording again changes nothing, and an interrupted one goes on where it was."""
-    recording = open_recording(path, layout, parse_up(up) if up else None, stride)
+    recording = open_recording(
+        path, layout, parse_up(up) if up else None, stride, parse_options(option or [])
+    )
     with stack_for(standalone, data_dir) as addresses:
         result = asyncio.run(_replay(recording, addresses, scene, robot, quiet=json))
     if json:

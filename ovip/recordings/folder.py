@@ -11,13 +11,16 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable
+import shutil
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from ovip.errors import InvalidInput
 from ovip.recordings.frames import RecordedFrame
-from ovip.recordings.layout import Contents, FrameFiles
+from ovip.recordings.layout import NO_OPTIONS, Contents, ListedFrame, Options
 from ovip.recordings.onboard import write_onboard
+from ovip.recordings.sources import ImageFile
 from ovip.recordings.text import (
     data_lines,
     depth_scale_of,
@@ -26,6 +29,7 @@ from ovip.recordings.text import (
     read_json,
     read_pose_lines,
 )
+from ovip.recordings.up import Up
 from ovip.scene.types import F64, Intrinsics
 
 DEPTH_SCALE = 1000.0
@@ -38,14 +42,15 @@ class OvipFolder:
 
     name = "ovip"
     expects = "rgb/NNNNNN.jpg, depth/NNNNNN.png, poses.txt (16 numbers a line) and intrinsics.json"
-    z_up = True
+    options = NO_OPTIONS
+    up: Up = None
 
     def fits(self, folder: Path) -> bool:
         return (folder / "rgb").is_dir() and (
             (folder / "poses.txt").is_file() or (folder / "intrinsics.json").is_file()
         )
 
-    def read(self, folder: Path) -> Contents:
+    def read(self, folder: Path, options: Options) -> Contents:
         colors = sorted(
             (p for p in (folder / "rgb").iterdir() if _IMAGE.match(p.name)), key=lambda p: natural(p.name)
         )
@@ -86,7 +91,29 @@ def write_folder(folder: Path, intrinsics: Intrinsics, frames: Iterable[Recorded
     return len(poses)
 
 
-def _frame(color: Path, folder: Path, poses: list[F64], times: list[int]) -> FrameFiles:
+@contextmanager
+def new_folder(folder: Path) -> Iterator[Path]:
+    """A folder beside `folder` to write a recording into; it gets that name once all of it is written.
+
+    What an interrupted run left there is thrown away. Raises InvalidInput where `folder` holds anything already.
+    """
+    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+        raise InvalidInput(f"{folder}: expected a folder that does not exist yet or is empty, got one in use")
+    partial = folder.with_name(f".{folder.name}.partial")
+    shutil.rmtree(partial, ignore_errors=True)
+    try:
+        partial.mkdir(parents=True)
+        yield partial
+        if folder.exists():
+            folder.rmdir()
+        partial.rename(folder)
+    except OSError as error:
+        raise InvalidInput(f"{folder}: cannot be written: {error.strerror}") from error
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _frame(color: Path, folder: Path, poses: list[F64], times: list[int]) -> ListedFrame:
     number = int(color.stem)
     if number >= len(poses):
         raise InvalidInput(
@@ -95,12 +122,12 @@ def _frame(color: Path, folder: Path, poses: list[F64], times: list[int]) -> Fra
         )
     depth = folder / "depth" / f"{color.stem}.png"
     onboard = folder / "detections" / f"{color.stem}.json"
-    return FrameFiles(
+    return ListedFrame(
         name=color.stem,
         timestamp_ns=times[number],
         pose=poses[number],
-        rgb=color,
-        depth=depth if depth.exists() else None,
+        rgb=ImageFile(color),
+        depth=ImageFile(depth) if depth.exists() else None,
         onboard=onboard if onboard.exists() else None,
     )
 

@@ -9,13 +9,14 @@ import cv2
 import numpy as np
 
 from ovip.recordings.frames import RgbEncoding
-from ovip.scene.types import U16
+from ovip.scene.types import U8, U16
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _PNG_GREY = 0
 _JPEG = b"\xff\xd8\xff"
 _JPEG_SIZE_MARKERS = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 _LONGEST_HEADER = 1 << 18
+_JPEG_QUALITY = 95
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ def without_value(depth_png: bytes, invalid: int) -> bytes:
     depth = decode_raw_depth(depth_png)
     if depth is None or not (depth == invalid).any():
         return depth_png
-    return cv2.imencode(".png", np.where(depth == invalid, 0, depth).astype(np.uint16))[1].tobytes()
+    return encode_raw_depth(np.where(depth == invalid, 0, depth).astype(np.uint16))
 
 
 def decode_raw_depth(depth_png: bytes) -> U16 | None:
@@ -66,6 +67,18 @@ def decode_raw_depth(depth_png: bytes) -> U16 | None:
     if depth is None or depth.dtype != np.uint16 or depth.ndim != 2:
         return None
     return np.asarray(depth, dtype=np.uint16)
+
+
+def encode_raw_depth(depth: U16) -> bytes:
+    """`(H, W)` uint16 as a PNG of one channel."""
+    return cv2.imencode(".png", depth, [cv2.IMWRITE_PNG_COMPRESSION, 3])[1].tobytes()
+
+
+def encode_color(bgr: U8, encoding: RgbEncoding) -> bytes:
+    """`(H, W, 3)` blue, green, red as PNG or as JPEG of quality 95."""
+    if encoding == "png":
+        return cv2.imencode(".png", bgr)[1].tobytes()
+    return cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])[1].tobytes()
 
 
 def _parse_jpeg(data: bytes) -> ImageHeader | None:

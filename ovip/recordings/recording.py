@@ -7,18 +7,17 @@ import struct
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from ovip.errors import InvalidInput
 from ovip.recordings.frames import RecordedFrame, SkippedFrame
-from ovip.recordings.images import ImageHeader, decode_raw_depth, parse_header, read_header, without_value
-from ovip.recordings.layout import Contents, FrameFiles
+from ovip.recordings.images import ImageHeader, decode_raw_depth, parse_header, without_value
+from ovip.recordings.layout import Contents, ImageSource, ListedFrame
 from ovip.recordings.onboard import read_onboard
 from ovip.recordings.up import Up, find_up, rotation_to_z_up, unit_up
 from ovip.scene.camera import check_pose
-from ovip.scene.types import F32, F64, Intrinsics
+from ovip.scene.types import F32, F64, I64, Intrinsics
 
 VIEWS_FOR_UP = 20
 
@@ -53,7 +52,24 @@ class Recording:
         """The frames whose `index` is above `after`; for going on where an earlier run stopped."""
         for index in self._used:
             if index > after:
-                yield self._load(index)
+                yield self.load(index)
+
+    @property
+    def indices(self) -> tuple[int, ...]:
+        """The `index` of every frame that it yields, in order."""
+        return self._used
+
+    def names(self) -> tuple[str, ...]:
+        """What the recording itself calls the frames that it yields."""
+        return tuple(self._contents.frames[index].name for index in self._used)
+
+    def poses(self) -> F64:
+        """world_from_camera `(N, 4, 4)` of the frames that it yields; reads no image."""
+        return np.array([self._pose(index) for index in self._used])
+
+    def timestamps(self) -> I64:
+        """`(N,)` nanoseconds of the frames that it yields."""
+        return np.array([self._contents.frames[index].timestamp_ns for index in self._used], np.int64)
 
     def fingerprint(self) -> str:
         """sha256 (hex) over layout, intrinsics, depth scale, up, all poses and names; not the stride."""
@@ -66,25 +82,32 @@ class Recording:
             digest.update(struct.pack("<16d", *pose.ravel()))
         return digest.hexdigest()
 
-    def _load(self, index: int) -> RecordedFrame:
-        files = self._contents.frames[index]
-        assert files.pose is not None
-        assert files.rgb is not None
-        assert files.depth is not None
-        rgb, depth, invalid = _read(files.rgb), _read(files.depth), self._contents.invalid_depth
+    def load(self, index: int) -> RecordedFrame:
+        """One frame, by its `index` (one of `indices`)."""
+        listed = self._contents.frames[index]
+        assert listed.rgb is not None
+        assert listed.depth is not None
+        rgb, depth, invalid = listed.rgb.read(), listed.depth.read(), self._contents.invalid_depth
         header = parse_header(rgb)
         if header is None:
-            raise InvalidInput(f"{files.rgb}: expected a JPEG or PNG image, as when the recording was opened")
+            raise InvalidInput(
+                f"{listed.rgb.where}: expected a JPEG or PNG image, as when the recording was opened"
+            )
         return RecordedFrame(
             index=index,
-            timestamp_ns=files.timestamp_ns,
-            world_from_camera=self.world_from_source @ rigid(files.pose),
+            timestamp_ns=listed.timestamp_ns,
+            world_from_camera=self._pose(index),
             rgb_bytes=rgb,
             rgb_encoding=header.encoding,
             depth_bytes=depth if invalid is None else without_value(depth, invalid),
             depth_scale=self.depth_scale,
-            onboard=None if files.onboard is None else read_onboard(files.onboard),
+            onboard=None if listed.onboard is None else read_onboard(listed.onboard),
         )
+
+    def _pose(self, index: int) -> F64:
+        pose = self._contents.frames[index].pose
+        assert pose is not None
+        return self.world_from_source @ rigid(pose)
 
 
 def recording_of(contents: Contents, name: str, layout: str, up: Up, stride: int) -> Recording:
@@ -120,39 +143,39 @@ def rigid(pose: F64) -> F64:
 def _usable(contents: Contents, stride: int) -> tuple[tuple[int, ...], tuple[SkippedFrame, ...]]:
     used, skipped = [], []
     for index in range(0, len(contents.frames), stride):
-        files = contents.frames[index]
-        trouble = _trouble(files, contents.intrinsics)
+        listed = contents.frames[index]
+        trouble = _trouble(listed, contents.intrinsics)
         if trouble:
-            skipped.append(SkippedFrame(index, files.name, trouble))
+            skipped.append(SkippedFrame(index, listed.name, trouble))
         else:
             used.append(index)
     return tuple(used), tuple(skipped)
 
 
-def _trouble(files: FrameFiles, k: Intrinsics) -> str:
+def _trouble(listed: ListedFrame, k: Intrinsics) -> str:
     """Why this frame cannot be used, or ""; InvalidInput where it shows that the whole recording is wrong."""
-    if files.pose is None:
+    if listed.pose is None:
         return "no pose"
-    if files.rgb is None or files.depth is None:
-        return "no colour image" if files.rgb is None else "no depth image"
-    rgb, depth = read_header(files.rgb), read_header(files.depth)
+    if listed.rgb is None or listed.depth is None:
+        return "no colour image" if listed.rgb is None else "no depth image"
+    rgb, depth = listed.rgb.header(), listed.depth.header()
     if rgb is None:
         return "colour image missing or not a JPEG or PNG"
     if depth is None:
         return "depth image missing or not a PNG"
-    _check_size(files.rgb, rgb, k)
-    _check_size(files.depth, depth, k)
+    _check_size(listed.rgb, rgb, k)
+    _check_size(listed.depth, depth, k)
     if not (depth.encoding == "png" and depth.bits == 16 and depth.grey):
         raise InvalidInput(
-            f"{files.depth}: expected a 16-bit PNG of one channel, got {depth.bits}-bit {depth.encoding}"
+            f"{listed.depth.where}: expected a 16-bit PNG of one channel, got {depth.bits}-bit {depth.encoding}"
         )
-    return _pose_trouble(files.pose)
+    return _pose_trouble(listed.pose)
 
 
-def _check_size(path: Path, header: ImageHeader, k: Intrinsics) -> None:
+def _check_size(image: ImageSource, header: ImageHeader, k: Intrinsics) -> None:
     if (header.width, header.height) != (k.width, k.height):
         raise InvalidInput(
-            f"{path}: expected {k.width}x{k.height} pixels as the intrinsics say, "
+            f"{image.where}: expected {k.width}x{k.height} pixels as the intrinsics say, "
             f"got {header.width}x{header.height}"
         )
 
@@ -182,18 +205,11 @@ def _found_up(contents: Contents, used: tuple[int, ...]) -> F64:
 
 def _view(contents: Contents, index: int) -> tuple[F32, F64] | None:
     """Depth in metres and pose of one frame; None where the depth does not decode."""
-    files = contents.frames[index]
-    assert files.pose is not None
-    assert files.depth is not None
-    raw = decode_raw_depth(_read(files.depth))
+    listed = contents.frames[index]
+    assert listed.pose is not None
+    assert listed.depth is not None
+    raw = decode_raw_depth(listed.depth.read())
     if raw is None:
         return None
     valid = np.ones(raw.shape, np.bool_) if contents.invalid_depth is None else raw != contents.invalid_depth
-    return np.where(valid, raw / contents.depth_scale, 0).astype(np.float32), rigid(files.pose)
-
-
-def _read(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InvalidInput(f"{path}: expected a readable file, got: {error.strerror}") from error
+    return np.where(valid, raw / contents.depth_scale, 0).astype(np.float32), rigid(listed.pose)

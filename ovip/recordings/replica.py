@@ -11,8 +11,10 @@ import re
 from pathlib import Path
 
 from ovip.errors import InvalidInput
-from ovip.recordings.layout import Contents, FrameFiles
+from ovip.recordings.layout import NO_OPTIONS, Contents, ListedFrame, Options
+from ovip.recordings.sources import ImageFile
 from ovip.recordings.text import depth_scale_of, intrinsics_of, natural, read_json, read_pose_lines
+from ovip.recordings.up import Up
 from ovip.scene.types import F64, Intrinsics
 
 DEPTH_SCALE = 6553.5
@@ -28,12 +30,13 @@ class Replica:
     expects = (
         "results/frameNNNNNN.jpg, results/depthNNNNNN.png, traj.txt, and cam_params.json in the folder above"
     )
-    z_up = True
+    options = NO_OPTIONS
+    up: Up = None
 
     def fits(self, folder: Path) -> bool:
         return (folder / "traj.txt").is_file() or any((folder / "results").glob("frame*"))
 
-    def read(self, folder: Path) -> Contents:
+    def read(self, folder: Path, options: Options) -> Contents:
         results = folder / "results"
         if not results.is_dir():
             raise InvalidInput(
@@ -50,7 +53,7 @@ class Replica:
         return Contents(intrinsics, scale, frames, notes=notes)
 
 
-def _frame(color: Path, poses: list[F64], folder: Path) -> FrameFiles:
+def _frame(color: Path, poses: list[F64], folder: Path) -> ListedFrame:
     match = _FRAME.match(color.name)
     assert match is not None
     number = int(match[1])
@@ -60,12 +63,12 @@ def _frame(color: Path, poses: list[F64], folder: Path) -> FrameFiles:
             f"got {len(poses)} lines"
         )
     depth = color.with_name(f"depth{match[1]}.png")
-    return FrameFiles(
+    return ListedFrame(
         name=color.stem,
         timestamp_ns=round(number * FRAME_NS),
         pose=poses[number],
-        rgb=color,
-        depth=depth if depth.exists() else None,
+        rgb=ImageFile(color),
+        depth=ImageFile(depth) if depth.exists() else None,
     )
 
 

@@ -10,12 +10,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import numpy as np
-
 from ovip.errors import InvalidInput
-from ovip.recordings.images import read_header
-from ovip.recordings.layout import Contents, FrameFiles
-from ovip.recordings.text import checked, natural, read_matrix
+from ovip.recordings.layout import NO_OPTIONS, Contents, ListedFrame, Options
+from ovip.recordings.sources import ImageFile, first_header
+from ovip.recordings.text import intrinsics_of_matrix, natural, read_matrix
+from ovip.recordings.up import Up
 from ovip.scene.types import Intrinsics
 
 DEPTH_SCALE = 1000.0
@@ -32,12 +31,13 @@ class SevenScenes:
         "frame-NNNNNN.color.jpg (or .png), frame-NNNNNN.depth.png, frame-NNNNNN.pose.txt and "
         "camera-intrinsics.txt"
     )
-    z_up = False
+    options = NO_OPTIONS
+    up: Up = "auto"
 
     def fits(self, folder: Path) -> bool:
         return any(folder.glob("frame-*.pose.txt")) or any(folder.glob("frame-*.color.*"))
 
-    def read(self, folder: Path) -> Contents:
+    def read(self, folder: Path, options: Options) -> Contents:
         colors = sorted(
             (path for path in folder.iterdir() if _COLOR.match(path.name)), key=lambda p: natural(p.name)
         )
@@ -49,17 +49,17 @@ class SevenScenes:
         return Contents(_intrinsics(folder, colors), DEPTH_SCALE, frames, invalid_depth=INVALID_DEPTH)
 
 
-def _frame(color: Path) -> FrameFiles:
+def _frame(color: Path) -> ListedFrame:
     match = _COLOR.match(color.name)
     assert match is not None
     name, number = match[1], int(match[2])
     pose, depth = color.with_name(f"{name}.pose.txt"), color.with_name(f"{name}.depth.png")
-    return FrameFiles(
+    return ListedFrame(
         name=name,
         timestamp_ns=round(number * FRAME_NS),
         pose=read_matrix(pose, 4, 4) if pose.exists() else None,
-        rgb=color,
-        depth=depth if depth.exists() else None,
+        rgb=ImageFile(color),
+        depth=ImageFile(depth) if depth.exists() else None,
     )
 
 
@@ -70,15 +70,8 @@ def _intrinsics(folder: Path, colors: list[Path]) -> Intrinsics:
             f"{folder}: expected camera-intrinsics.txt (3x3 K in pixels). The zips of 7-Scenes itself "
             "come without: write '585 0 320 / 0 585 240 / 0 0 1' on three lines"
         )
-    k = read_matrix(path, 3, 3)
-    if not (np.isfinite(k).all() and np.allclose(k[2], [0, 0, 1]) and k[1, 0] == 0):
-        raise InvalidInput(f"{path}: expected a camera matrix 'fx 0 cx / 0 fy cy / 0 0 1', got {k.tolist()}")
-    header = next((found for found in map(read_header, colors) if found), None)
-    if header is None:
-        raise InvalidInput(
-            f"{folder}: expected colour images in JPEG or PNG, got {len(colors)} files of no known kind"
-        )
-    found = checked(Intrinsics(k[0, 0], k[1, 1], k[0, 2], k[1, 2], header.width, header.height), path)
+    header = first_header(colors)
+    found = intrinsics_of_matrix(path, header.width, header.height)
     if not (0.3 < found.cx / found.width < 0.7 and 0.3 < found.cy / found.height < 0.7):
         raise InvalidInput(
             f"{path}: expected intrinsics for the {found.width}x{found.height} images, got a principal point "

@@ -92,6 +92,20 @@ def intrinsics_of(
     return checked(Intrinsics(fx, fy, cx, cy, int(w), int(h)), path)
 
 
+def intrinsics_of_matrix(path: Path, width: int, height: int) -> Intrinsics:
+    """Pinhole intrinsics from a 3x3 or 4x4 camera matrix in pixels of a `width` x `height` image."""
+    numbers = parse_numbers(read_text(path), str(path))
+    if numbers.size not in (9, 16):
+        raise InvalidInput(f"{path}: expected a 3x3 or 4x4 camera matrix, got {numbers.size} numbers")
+    k = numbers.reshape((3, 3) if numbers.size == 9 else (4, 4))[:3, :3]
+    if not (np.isfinite(k).all() and np.allclose(k[2], [0, 0, 1]) and k[1, 0] == 0):
+        raise InvalidInput(f"{path}: expected a camera matrix 'fx 0 cx / 0 fy cy / 0 0 1', got {k.tolist()}")
+    found = Intrinsics(
+        float(k[0, 0]), float(k[1, 1]), float(k[0, 2]), float(k[1, 2]), int(width), int(height)
+    )
+    return checked(found, path)
+
+
 def depth_scale_of(values: dict[str, object], key: str, path: Path) -> float:
     """Depth units per metre under `key`: finite and above zero."""
     scale = json_number(values, key, path)

@@ -16,9 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from ovip.errors import InvalidInput
-from ovip.recordings.images import read_header
-from ovip.recordings.layout import Contents, FrameFiles
+from ovip.recordings.layout import NO_OPTIONS, Contents, ListedFrame, Options
+from ovip.recordings.sources import ImageFile
 from ovip.recordings.text import data_lines, depth_scale_of, intrinsics_of, parse_numbers, read_json
+from ovip.recordings.up import Up
 from ovip.scene.types import F64, I64, Intrinsics
 
 DEPTH_SCALE = 5000.0
@@ -39,25 +40,26 @@ class Tum:
     expects = (
         "rgb.txt, depth.txt and groundtruth.txt ('timestamp file' or 'timestamp tx ty tz qx qy qz qw' a line)"
     )
-    z_up = True
+    options = NO_OPTIONS
+    up: Up = None
 
     def fits(self, folder: Path) -> bool:
         lists = ("rgb.txt", "depth.txt", "groundtruth.txt")
         return sum((folder / name).is_file() for name in lists) >= 2
 
-    def read(self, folder: Path) -> Contents:
+    def read(self, folder: Path, options: Options) -> Contents:
         rgb, depth = _read_list(folder / "rgb.txt"), _read_list(folder / "depth.txt")
         pose_times, poses = _read_trajectory(folder / "groundtruth.txt")
         rgb_times = np.array([time for time, _ in rgb], dtype=np.int64)
         depth_of = associate(rgb_times, np.array([time for time, _ in depth], dtype=np.int64), MAX_DT_NS)
         pose_of = nearest(rgb_times, pose_times, MAX_DT_NS)
         frames = tuple(
-            FrameFiles(
+            ListedFrame(
                 name=name,
                 timestamp_ns=time,
                 pose=poses[p] if p >= 0 else None,
-                rgb=folder / name,
-                depth=folder / depth[d][1] if d >= 0 else None,
+                rgb=ImageFile(folder / name),
+                depth=ImageFile(folder / depth[d][1]) if d >= 0 else None,
             )
             for (time, name), d, p in zip(rgb, depth_of.tolist(), pose_of.tolist(), strict=True)
         )
@@ -154,13 +156,13 @@ def _nanoseconds(word: str, where: str) -> int:
         raise InvalidInput(f"{where}: expected a time in seconds, got {word!r}") from error
 
 
-def _camera(folder: Path, frames: tuple[FrameFiles, ...]) -> tuple[Intrinsics, float, tuple[str, ...]]:
+def _camera(folder: Path, frames: tuple[ListedFrame, ...]) -> tuple[Intrinsics, float, tuple[str, ...]]:
     own = folder / "intrinsics.json"
     if own.exists():
         values = read_json(own)
         scale = depth_scale_of(values, "depth_scale", own) if "depth_scale" in values else DEPTH_SCALE
         return intrinsics_of(values, own), scale, ()
-    headers = (read_header(frame.rgb) for frame in frames if frame.rgb)
+    headers = (frame.rgb.header() for frame in frames if frame.rgb)
     header = next((found for found in headers if found), None)
     if header is not None and (header.width, header.height) != (640, 480):
         raise InvalidInput(

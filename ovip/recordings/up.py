@@ -68,11 +68,13 @@ def rotation_to_z_up(up: F64) -> F64:
     """The smallest rotation `(4, 4)` that takes unit `up` to +z; about x where `up` is straight down."""
     x, y, z = up
     transform = np.eye(4)
-    if z < -1 + 1e-12:
+    across = x * x + y * y
+    if z < 0 and across < 1e-24:
         transform[:3, :3] = np.diag([1.0, -1.0, -1.0])
         return transform
+    one_plus_z = 1 + z if z > 0 else across / (1 - z)  # exact where up is nearly straight down
     skew = np.array([[0, 0, -x], [0, 0, -y], [x, y, 0]], dtype=np.float64)
-    transform[:3, :3] = np.eye(3) + skew + skew @ skew / (1 + z)
+    transform[:3, :3] = np.eye(3) + skew + skew @ skew / one_plus_z
     return transform
 
 

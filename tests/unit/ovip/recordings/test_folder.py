@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ovip.errors import InvalidInput
-from ovip.recordings import OnboardDetection, open_recording, write_folder
+from ovip.recordings import OnboardDetection, new_folder, open_recording, write_folder
 from ovip.scene.types import Box2, Intrinsics
 
 
@@ -50,6 +50,32 @@ def test_no_recording_is_written_over(ovip_folder) -> None:
     folder = ovip_folder()
     with pytest.raises(InvalidInput, match="expected a folder without a recording"):
         write_folder(folder, Intrinsics(60, 60, 31.5, 23.5, 64, 48), [])
+
+
+def test_a_run_that_fails_in_the_middle_leaves_nothing(tmp_path: Path) -> None:
+    with (
+        pytest.raises(InvalidInput, match="kept: cannot be written: No space left on device"),
+        new_folder(tmp_path / "kept") as folder,
+    ):
+        (folder / "rgb").mkdir()
+        raise OSError(28, "No space left on device")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_appears_only_when_all_of_it_is_written(tmp_path: Path) -> None:
+    with new_folder(tmp_path / "kept") as folder:
+        (folder / "poses.txt").write_text("")
+        assert not (tmp_path / "kept").exists()
+    assert [path.name for path in tmp_path.rglob("*")] == ["kept", "poses.txt"]
+
+
+@pytest.mark.parametrize("name", ["kept", "kept/poses.txt"])
+def test_a_new_folder_in_use_is_refused(tmp_path: Path, name: str) -> None:
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "poses.txt").write_text("mine")
+    with pytest.raises(InvalidInput, match="does not exist yet or is empty"), new_folder(tmp_path / name):
+        pass
+    assert (tmp_path / "kept" / "poses.txt").read_text() == "mine"
 
 
 def test_a_robot_that_saw_nothing_differs_from_one_that_does_not_detect(ovip_folder) -> None:

@@ -127,7 +127,10 @@ def test_an_empty_folder_a_file_and_nothing_are_told_apart(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"layout": "scannet"}, "layout: expected one of 7scenes, tum, replica, ovip, got 'scannet'"),
+        ({"layout": "kitti"}, "layout: expected one of ovip, 7scenes, tum, replica, .*, got 'kitti'"),
+        ({"layout": "ovip", "options": {"hfov": "90"}}, "layout ovip takes depth_scale .*; got hfov"),
+        ({"layout": "ovip", "options": {"depth_scale": "mm"}}, "option depth_scale: .* got 'mm'"),
+        ({"layout": "ovip", "options": {"depth_scale": "0"}}, "option depth_scale: .* above 0, got '0'"),
         ({"layout": "ovip", "stride": 0}, "stride: expected 1 or more, got 0"),
         ({"layout": "ovip", "up": (0.0, 0.0, 0.0)}, "up: expected three finite numbers"),
         ({"layout": "ovip", "up": "north"}, "up: expected 'auto' or three numbers"),

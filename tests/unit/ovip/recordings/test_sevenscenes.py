@@ -79,7 +79,7 @@ def test_missing_pose_files_are_an_error(sevenscenes) -> None:
     ("text", "message"),
     [
         (None, r"expected camera-intrinsics\.txt"),
-        ("60 0 32\n0 60 24\n", "expected 3x3 numbers, got 6"),
+        ("60 0 32\n0 60 24\n", "expected a 3x3 or 4x4 camera matrix, got 6 numbers"),
         ("sixty 0 32\n0 60 24\n0 0 1\n", "expected numbers, got 'sixty"),
         ("60 0 32\n0 60 24\n0 0 2\n", "expected a camera matrix"),
         ("nan 0 32\n0 60 24\n0 0 1\n", "expected a camera matrix"),

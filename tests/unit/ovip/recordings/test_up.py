@@ -103,6 +103,14 @@ def test_the_rotation_takes_up_to_z_and_is_a_rotation(up: tuple[float, float, fl
     np.testing.assert_array_equal(turn[:3, 3], 0)
 
 
+@pytest.mark.parametrize("aside", [1e-13, 1e-9, 1e-6, 1e-3])
+def test_an_up_that_is_nearly_straight_down_still_turns_to_z(aside: float) -> None:
+    unit = unit_up((0.0, aside, -0.5))
+    turn = rotation_to_z_up(unit)[:3, :3]
+    np.testing.assert_allclose(turn @ unit, [0, 0, 1], atol=1e-9)
+    np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-9)
+
+
 def test_z_up_is_left_alone_and_straight_down_turns_about_x() -> None:
     np.testing.assert_array_equal(rotation_to_z_up(np.array([0.0, 0, 1])), np.eye(4))
     np.testing.assert_array_equal(rotation_to_z_up(np.array([0.0, 0, -1])), np.diag([1.0, -1, -1, 1]))
