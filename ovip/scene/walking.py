@@ -13,18 +13,19 @@ from ovip.scene.types import F64, I64, Bools
 
 
 def clearance(grid: FloorGrid) -> F64:
-    """Metres from each free cell's centre to the nearest occupied cell's centre -> `(R, C)`; 0 where not
-    free.
+    """Metres from each free cell's centre to the nearest edge of an occupied cell -> `(R, C)`; 0 where not free.
 
-    Unknown cells and the grid's edge are no obstacles (one may pass beside them, never stand on them); with
-    nothing occupied every free cell's clearance is infinite.
+    What was seen in a cell may lie anywhere in it, so only its edge keeps a robot's promise to fit. Unknown cells
+    and the grid's edge are no obstacles (one may pass beside them, never stand on them); with nothing occupied
+    every free cell's clearance is infinite.
     """
     free = grid.occupancy == FREE
     occupied = grid.occupancy == OCCUPIED
     if not occupied.any():
         return np.where(free, np.inf, 0.0)
-    distance: F64 = ndimage.distance_transform_edt(~occupied, sampling=grid.resolution)
-    return np.where(free, distance, 0.0)
+    touched = _lattice(occupied)
+    distance: F64 = ndimage.distance_transform_edt(~touched, sampling=grid.resolution / 2)
+    return np.where(free, distance[1::2, 1::2], 0.0)
 
 
 def traversable(grid: FloorGrid, radius: float) -> Bools:
@@ -105,6 +106,19 @@ def path_length(path: F64) -> float:
 def _holds(mask: Bools, cell: tuple[int, int]) -> bool:
     row, column = cell
     return 0 <= row < mask.shape[0] and 0 <= column < mask.shape[1] and bool(mask[row, column])
+
+
+def _lattice(mask: Bools) -> Bools:
+    """Points half a cell apart, `(2R + 1, 2C + 1)`: the corners, edges' middles and centre of every set cell.
+
+    A cell's point nearest to the centre of another one is always among them, so distances are exact.
+    """
+    rows, columns = mask.shape
+    points = np.zeros((2 * rows + 1, 2 * columns + 1), dtype=bool)
+    for down in range(3):
+        for across in range(3):
+            points[down : down + 2 * rows : 2, across : across + 2 * columns : 2] |= mask
+    return points
 
 
 def _walk_graph(mask: Bools, resolution: float) -> tuple[sparse.csr_matrix, I64]:

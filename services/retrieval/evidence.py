@@ -18,7 +18,7 @@ NO_PARTITION = Partition(map_version=0, revision=0)
 _MOST_WORDS = 20_000
 _MOST_SCENES = 16
 _WORDS_A_CALL = 128
-_TAGS_PROBED = 64
+_TAGS_A_CALL = 32  # as many as perception grounds at once
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,11 +114,12 @@ class Evidence:
         if not set(words) <= set(blind):
             return True
         records, _ = await self.frames()
-        tags = sorted({tag for record in records for tag in record.tags})[:_TAGS_PROBED]
-        if not tags:
-            return False
-        _, beyond = await self.sources.grounder.ground(self.scene, [], tags)
-        return bool(beyond)
+        tags = sorted({tag for record in records for tag in record.tags})
+        for at in range(0, len(tags), _TAGS_A_CALL):
+            _, beyond = await self.sources.grounder.ground(self.scene, [], tags[at : at + _TAGS_A_CALL])
+            if beyond:
+                return True
+        return False
 
     async def grid(self, floor: int) -> FloorGrid | None:
         """A storey's grid; None where there is none (yet)."""

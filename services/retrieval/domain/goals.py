@@ -20,14 +20,14 @@ NO_PATH: F64 = np.zeros((0, 3))
 
 @dataclass(frozen=True, slots=True)
 class GoalParams:
-    """near, far: metres from the object's footprint at which to stand; farthest: where nothing nearer can be
-    reached.
+    """near, far: metres from the object's footprint at which to stand, so that one is within a metre of it even where
+    the mapped box is a few decimetres off; farthest: where nothing nearer can be reached.
 
     start_reach: how far the start may be from floor that can be stood on (a hand-held camera over a table).
     """
 
     near: float = 0.3
-    far: float = 1.0
+    far: float = 0.6
     farthest: float = 3.0
     start_reach: float = 2.0
 

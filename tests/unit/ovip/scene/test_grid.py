@@ -41,12 +41,24 @@ def test_cell_of_and_xy_of_are_inverse() -> None:
     assert grid.cell_of(grid.xy_of(1, 2)) == (1, 2)
 
 
-def test_clearance_is_the_distance_between_cell_centres() -> None:
-    assert clearance(grid_of("#...")).tolist() == [[0.0, 0.5, 1.0, 1.5]]
+def test_clearance_is_the_distance_to_the_edge_of_an_occupied_cell() -> None:
+    assert clearance(grid_of("#...")).tolist() == [[0.0, 0.25, 0.75, 1.25]]
+    assert clearance(grid_of("#.", ".."))[1, 1] == pytest.approx(np.hypot(0.25, 0.25))
+
+
+@settings(max_examples=60, deadline=None)
+@given(OCCUPANCIES)
+def test_nothing_in_an_occupied_cell_is_nearer_than_the_clearance(occupancy: np.ndarray) -> None:
+    grid = FloorGrid(0, (-1.0, 3.0), 0.25, occupancy, np.zeros(occupancy.shape, np.uint16))
+    cells = np.argwhere(occupancy == OCCUPIED)
+    for row, column in np.argwhere(occupancy == FREE):
+        apart = np.maximum(np.abs(cells - (row, column)) - 0.5, 0.0) * grid.resolution
+        nearest = np.hypot(*apart.T).min() if len(cells) else np.inf
+        assert clearance(grid)[row, column] == pytest.approx(nearest)
 
 
 def test_unknown_is_no_obstacle_but_cannot_be_stood_on() -> None:
-    assert clearance(grid_of("#..?")).tolist() == [[0.0, 0.5, 1.0, 0.0]]
+    assert clearance(grid_of("#..?")).tolist() == [[0.0, 0.25, 0.75, 0.0]]
     assert traversable(grid_of(".?"), 3.0).tolist() == [[True, False]]
 
 
@@ -55,7 +67,7 @@ def test_clearance_is_infinite_where_nothing_is_occupied() -> None:
 
 
 def test_a_cell_exactly_the_radius_away_is_traversable() -> None:
-    assert traversable(grid_of("#..."), 1.0).tolist() == [[False, False, True, True]]
+    assert traversable(grid_of("#..."), 0.75).tolist() == [[False, False, True, True]]
 
 
 def test_footprints_close_the_cells_whose_centres_they_cover() -> None:
@@ -119,8 +131,8 @@ def test_a_goal_out_of_reach_has_no_path() -> None:
 def test_a_robot_too_wide_for_the_door_has_no_path() -> None:
     grid = grid_of(*["....#....", "....#....", ".........", "....#....", "....#...."])
     start, goal = np.array([0.25, 1.25]), np.array([4.25, 1.25])
-    assert len(shortest_path(grid, start, goal, 0.5, reach=0.5)) == 9
-    assert len(shortest_path(grid, start, goal, 0.6, reach=0.5)) == 0
+    assert len(shortest_path(grid, start, goal, 0.25, reach=0.5)) == 9
+    assert len(shortest_path(grid, start, goal, 0.3, reach=0.5)) == 0
 
 
 def test_straightening_keeps_the_ends_and_the_corner() -> None:

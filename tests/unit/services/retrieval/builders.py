@@ -8,7 +8,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from ovip.errors import NotConfigured, NotFound
+from ovip.errors import InvalidInput, NotConfigured, NotFound
 from ovip.scene.answers import FrameRecord, PerceptionStatus, VlmReply
 from ovip.scene.grid import FREE, OCCUPIED, UNKNOWN, FloorGrid
 from ovip.scene.types import (
@@ -24,6 +24,7 @@ from ovip.scene.types import (
     SceneMap,
 )
 
+MOST_WORDS = 32  # that perception grounds at once
 CAMERA = Intrinsics(fx=300.0, fy=300.0, cx=159.5, cy=119.5, width=320, height=240)
 WHITE, DARK, RED, BROWN, GREY = (220, 218, 214), (60, 52, 45), (178, 34, 34), (110, 73, 57), (120, 119, 117)
 
@@ -217,6 +218,8 @@ class World:
     async def ground(
         self, scene: str, frame_ids: Sequence[str], words: Sequence[str]
     ) -> tuple[dict[str, tuple[Detection, ...]], tuple[str, ...]]:
+        if len(words) > MOST_WORDS:
+            raise InvalidInput(f"words: expected at most {MOST_WORDS}, got {len(words)}")
         labels = {d.label for f in frame_ids for d in self.seen.get(f, ())} if self.onboard else set()
         blind = tuple(word for word in words if not self.groundable(word) and word not in labels)
         for frame_id in frame_ids:

@@ -650,6 +650,14 @@ async def test_eyes_on_board_beyond_the_grounder_are_not_ruled_out(home: Store) 
     assert answer.outcome is Outcome.FOUND
 
 
+async def test_a_scene_of_a_hundred_words_is_probed_a_few_at_a_time(home: Store) -> None:
+    words = tuple(f"thing {k:03d}" for k in range(100))
+    world = kettle_world("f000", "f001", "f002", tags=("kettle", *words))
+    world.onboard = True
+    world.groundable = lambda word: word in words[:70]
+    assert (await ask(build(home, world), "kettle")).outcome is Outcome.FOUND
+
+
 async def test_a_search_whose_every_look_was_blind_is_not_absent(home: Store) -> None:
     world = kettle_world(tags=("teapot",), groundable=lambda _: False)
     _, events = await drive(build(home, world), START, Robot(world).look)
