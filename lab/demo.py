@@ -1,7 +1,8 @@
 """`python -m lab.demo`, what `make demo` runs: the main job on real input, from frames to answers.
 
-Starts a stack, streams the kitchen recording where it is beside the project, else the walk through the simulated
-home, asks five questions, prints what was answered, and leaves the dashboard running (DEMO_EXIT=1: ends).
+Starts a stack, streams the kitchen recording where it is beside the project, else the recorded tour of a simulated
+home and the walk of a robot that can then be sent to look, asks five questions, prints what was answered, and leaves
+the dashboard running (DEMO_EXIT=1: ends).
 """
 
 from __future__ import annotations
@@ -35,6 +36,9 @@ from services.standalone.process import read_ready, start_stack, stop_stack
 
 KITCHEN = Path(__file__).resolve().parents[2] / "shared" / "data" / "kitchen"
 KITCHEN_STRIDE = 3
+TOUR = Path(__file__).resolve().parent / "data" / "home_tour"
+TOUR_STRIDE = 3
+TOUR_QUESTIONS = ("plant", "sofa", "television", "piano")
 KITCHEN_QUESTIONS = ("white mug", "chair", "table", "television", "piano")
 HOME_QUESTIONS = ("red mug", "bed", "the vase on the bookshelf", "television")
 HOME_ABSENT = "blue mug"
@@ -109,12 +113,20 @@ def _stack(settings: Settings) -> Iterator[tuple[dict[str, Any], subprocess.Pope
 
 async def _demonstrate(addresses: Addresses) -> None:
     async with AsyncClient(addresses) as client:
-        show = _kitchen(client) if KITCHEN.is_dir() else _home(client)
-        await _map(client, show)
-        asked = [Asked(text, await client.find(Query(show.scene, text))) for text in show.questions]
-        if show.robot:
-            asked.append(Asked(show.search, await _search(client, show.scene, show.search, show.robot)))
+        asked: list[Asked] = []
+        for show in _shows(client):
+            await _map(client, show)
+            asked += [Asked(text, await client.find(Query(show.scene, text))) for text in show.questions]
+            if show.robot:
+                asked.append(Asked(show.search, await _search(client, show.scene, show.search, show.robot)))
     _print_answers(asked)
+
+
+def _shows(client: AsyncClient) -> list[Show]:
+    """The kitchen where it is there; else the tour, which perception sees, and a robot for the search."""
+    if KITCHEN.is_dir():
+        return [_kitchen(client)]
+    return [_tour(client), _home(client, ())] if TOUR.is_dir() else [_home(client, HOME_QUESTIONS)]
 
 
 def _kitchen(client: AsyncClient) -> Show:
@@ -129,14 +141,26 @@ def _kitchen(client: AsyncClient) -> Show:
     )
 
 
-def _home(client: AsyncClient) -> Show:
+def _tour(client: AsyncClient) -> Show:
+    recording = open_recording(TOUR, "ovip", stride=TOUR_STRIDE)
+    hello = hello_of(recording, "tour", "replay")
+    return Show(
+        scene="tour",
+        what=f"a recorded tour of a simulated home, every {TOUR_STRIDE}rd frame (there is no recording in {KITCHEN})",
+        frames=len(recording),
+        stream=lambda on_event: client.stream(hello, outgoing(recording), on_event=on_event),
+        questions=TOUR_QUESTIONS,
+    )
+
+
+def _home(client: AsyncClient, questions: Sequence[str]) -> Show:
     robot = SimulatedRobot(SimulatedRoom(), client, "home")
     return Show(
         scene="home",
-        what=f"a robot's walk through a simulated home (there is no recording in {KITCHEN})",
+        what="a robot's walk through a small simulated home",
         frames=robot.walk_length,
         stream=robot.walk,
-        questions=HOME_QUESTIONS,
+        questions=questions,
         search=HOME_ABSENT,
         robot=robot,
     )

@@ -23,6 +23,7 @@ class Bench(StrEnum):
     PERCEPTION = "perception"
     TIER1 = "tier1"
     START = "start"
+    RENDERING = "rendering"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,14 +45,14 @@ def bench(
     kilobytes: Annotated[int, typer.Option(min=100, help="ingest: size of a frame")] = 300,
     duration: Annotated[float, typer.Option(min=0.1, help="ingest: seconds each way")] = 6.0,
     rate: Annotated[float, typer.Option(min=1.0, help="ingest: frames a second of the paced row")] = 250.0,
-    frames: Annotated[int, typer.Option(min=1, help="perception: frames to look at")] = 12,
+    frames: Annotated[int, typer.Option(min=1, help="perception, rendering: frames to look at")] = 12,
     recording: Annotated[
         Path | None, typer.Option(help="perception: a recording instead of the simulated home")
     ] = None,
     layout: Annotated[str, typer.Option(help=f"perception: its layout: {', '.join(LAYOUTS)}")] = "ovip",
     json: Json = False,
 ) -> None:
-    """Measure durable ingest, perception's steps, tier 1's answers, the start of a stack."""
+    """Measure durable ingest, perception's steps, tier 1's answers, the start of a stack, rendering."""
     configure_logging("warning", as_json=False)
     options = Options(robots, kilobytes, duration, rate, frames, recording, layout)
     began = time.perf_counter()
@@ -92,11 +93,18 @@ def _start(_: Options) -> list[Row]:
     return measure_start()
 
 
+def _rendering(options: Options) -> list[Row]:
+    from lab.bench.rendering import measure_rendering
+
+    return measure_rendering(options.frames)
+
+
 MEASURES: dict[Bench, Callable[[Options], list[Row]]] = {
     Bench.INGEST: _ingest,
     Bench.PERCEPTION: _perception,
     Bench.TIER1: _tier1,
     Bench.START: _start,
+    Bench.RENDERING: _rendering,
 }
 
 

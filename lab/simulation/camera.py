@@ -1,4 +1,4 @@
-"""The simulated robot's camera: its intrinsics, and the pose that looks a given way."""
+"""The simulated robot's camera: its intrinsics, where it sits, and the pose that looks a given way."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from ovip.scene.types import F64, Intrinsics
 
+EYE_HEIGHT, PITCH = 1.3, -0.28  # of the robot's camera: metres above the floor, radians
 CAMERA = Intrinsics(fx=230.0, fy=230.0, cx=159.5, cy=119.5, width=320, height=240)
 
 

@@ -8,21 +8,22 @@ little and picks the grain of surfaces.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from lab.simulation.camera import CAMERA
+from lab.simulation.camera import CAMERA, EYE_HEIGHT, PITCH
+from lab.simulation.detecting import Sight, onboard_detections
 from lab.simulation.furniture import BUILDERS, COLORS, Color, Piece
 from lab.simulation.rendering import Rendering, render
 from lab.simulation.solids import Finish, Solid, footprint_distance
-from lab.simulation.walking import smooth_walk
+from lab.simulation.walking import is_clear, smooth_walk
 from ovip.scene.boxes import box_of
 from ovip.scene.types import F32, F64, U8, U16, Intrinsics
 
 CEILING = 2.6
 DOOR_TOP = 2.05
 ROBOT_HEIGHT = 1.4
-EYE_HEIGHT, PITCH = 1.3, -0.28  # of the robot's camera: metres, radians
 
 STRUCTURE = ("floor", "ceiling", "wall")
 
@@ -139,6 +140,17 @@ class SimulatedRoom:
         if not any(_within(point[0], space) for space in (MAIN_ROOM, BEDROOM, DOORWAY)):
             return False
         return all(footprint_distance(solid, point)[0] >= clearance for solid in self._obstacles)
+
+    def way(self, start: F64, via: F64, clearance: float) -> F64 | None:
+        """Floor points `(N, 3)` driven straight from `start` through `via` `(N, 3)`; None where that is blocked."""
+        points = np.vstack([start, via]) * [1.0, 1.0, 0.0]
+        clear = all(is_clear(lambda p: self.is_free(p, clearance), a, b) for a, b in pairwise(points))
+        return points if clear else None
+
+    def observe(self, pose: F64, index: int, before: F64 | None = None) -> Sight:
+        """What the robot senses at `pose`: no noise, and exact detections on board."""
+        rgb, depth, ids = self.render(pose)
+        return Sight(rgb, depth, pose, ids, onboard_detections(self, ids))
 
     def object_with(self, object_id: int) -> SimulatedObject:
         """The object with this id, as in rendered ids."""

@@ -1,6 +1,8 @@
-"""A smooth camera walk through given places, looking at given targets, in steps of even effort."""
+"""Smooth camera walks through given places, and whether a straight way is clear."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from ovip.scene.types import F64
 LONGEST_STEP = 0.22  # metres
 LARGEST_TURN = 0.21  # radians
 _SAMPLES = 60
+_CHECKED = 0.05  # metres between places where a way is checked
 
 
 def smooth_walk(places: F64, targets: F64, height: float, pitch: float) -> list[F64]:
@@ -26,6 +29,12 @@ def smooth_walk(places: F64, targets: F64, height: float, pitch: float) -> list[
     at = np.linspace(0, done[-1], int(np.ceil(done[-1])) + 1)
     x, y, heading = (np.interp(at, done, column) for column in curve.T)
     return [pose_looking((x[i], y[i], height), float(heading[i]), pitch) for i in range(len(at))]
+
+
+def is_clear(is_free: Callable[[F64], bool], a: F64, b: F64) -> bool:
+    """Whether every place on the straight way from `a` to `b`, floor points `(2,)` or more, is free."""
+    count = int(np.ceil(np.hypot(*(b - a)[:2]) / _CHECKED)) + 1
+    return all(is_free(place) for place in np.linspace(a, b, count))
 
 
 def _curve(knots: F64) -> F64:

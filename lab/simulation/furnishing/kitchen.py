@@ -85,7 +85,7 @@ def furnish_dining_area(site: Site) -> None:
 def _dining_table(site: Site) -> Placed | None:
     """As large a one as leaves room for chairs."""
     for most, margin in (((2.0, 1.15, 0.85), 0.75), ((1.6, 1.0, 0.85), 0.7), ((1.3, 0.95, 0.85), 0.6)):
-        for label in site.wares.has(("dining table", "round table", "table")):
+        for label in site.wares.has(("dining table", "table")):
             ware = site.pick(label, most=most, least=(0.75, 0.6, 0.6), colored=0.4)
             if table := site.middle(ware, margin):
                 return table

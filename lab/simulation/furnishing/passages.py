@@ -46,7 +46,7 @@ def furnish_hall(site: Site) -> None:
 
 def furnish_balcony(site: Site) -> None:
     """A small table with chairs, plants along the parapet, a bicycle."""
-    table = site.stand(site.pick("round table", most=(0.75, 0.75, 0.8)) or site.pick("stool"), 0.0)
+    table = site.stand(site.pick("table", most=(0.75, 0.75, 0.8)) or site.pick("stool"), 0.0)
     site.put(site.pick("plant", most=(0.3, 0.3, 0.4)), table, near=(0, 0))
     site.put(site.pick("mug"), table)
     for _ in range(2):

@@ -25,7 +25,7 @@ _LEFT_ABOUT: Mapping[str, tuple[str, ...]] = {
     "balcony": ("mug", "bottle", "book", "glass"),
 }
 _CARRIERS = (
-    "kitchen cabinet", "dishwasher", "dining table", "round table", "table", "coffee table", "desk", "sideboard",
+    "kitchen cabinet", "dishwasher", "dining table", "table", "coffee table", "desk", "sideboard",
     "nightstand", "chest of drawers", "tv stand", "washing machine", "dryer", "shelf", "filing cabinet", "washbasin",
     "kitchen island", "stool", "bench", "piano", "bathtub",
 )  # fmt: skip

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,18 @@ NO_PATH = np.zeros((0, 3))
 
 def test_five_questions_are_asked_of_either_scene() -> None:
     assert len(demo.KITCHEN_QUESTIONS) == len([*demo.HOME_QUESTIONS, demo.HOME_ABSENT]) == 5
+    assert len([*demo.TOUR_QUESTIONS, demo.HOME_ABSENT]) == 5
+
+
+def test_the_tour_shows_what_is_asked_for_and_no_piano() -> None:
+    things = json.loads((demo.TOUR / "objects.json").read_text())
+    visible = json.loads((demo.TOUR / "visibility.json").read_text())
+    labels = {
+        thing["label"] for thing in things if visible.get(str(thing["object_id"]), {}).get("frames", 0) > 5
+    }
+    assert demo.TOUR_QUESTIONS == ("plant", "sofa", "television", "piano")
+    assert {"plant", "sofa", "tv"} <= labels
+    assert "piano" not in {thing["label"] for thing in things}
 
 
 def test_the_home_has_a_mug_but_not_the_one_that_is_searched_for() -> None:

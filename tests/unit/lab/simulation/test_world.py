@@ -14,7 +14,7 @@ import pytest_asyncio
 pytest.importorskip("open3d", reason="a home's world is rendered by Open3D")
 
 from lab.simulation import HomeWorld, HomeWorldParams, SensorParams, SimulatedRobot, SimulatedRoom, World
-from lab.simulation.camera import EYE_HEIGHT
+from lab.simulation.camera import EYE_HEIGHT, pose_looking
 from ovip.client import Addresses, AsyncClient
 from ovip.scene.answers import Viewpoint
 from ovip.scene.types import F64, Intrinsics
@@ -89,7 +89,8 @@ def test_a_way_to_the_storey_above_takes_the_stairs_and_back(world: HomeWorld) -
 
 
 def test_what_it_detects_on_board_is_what_is_in_view(world: HomeWorld) -> None:
-    sights = [world.observe(pose, i) for i, pose in enumerate(world.walk())]
+    poses = [pose_looking((2.0, 0.8, 1.3), np.pi / 2, -0.3), pose_looking((7.0, 0.8, 1.3), 0.0, -0.3)]
+    sights = [world.observe(pose, i) for i, pose in enumerate([*world.walk(), *poses])]
     for sight in sights:
         assert sight.onboard is not None
         for detection in sight.onboard:

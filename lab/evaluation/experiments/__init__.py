@@ -1,0 +1,1 @@
+"""One experiment a module: `run(options) -> Result`."""
