@@ -41,7 +41,9 @@ def test_a_lock_is_nothing_but_versions_and_hashes(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "extras"), [(EVERYDAY, ("embedded",)), (DEV, ("embedded", "lab", "ros", "dev"))], ids=["everyday", "dev"]
+    ("path", "extras"),
+    [(EVERYDAY, ("embedded",)), (DEV, ("embedded", "lab", "ros", "dev"))],
+    ids=["everyday", "dev"],
 )
 def test_a_lock_has_every_declared_dependency_in_an_allowed_version(
     path: Path, extras: tuple[str, ...]

@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping import (
+from lab.evaluation.mapping.pictures import with_maps
+from lab.evaluation.mapping.places import Place
+from lab.evaluation.mapping.runs import score_places
+from lab.evaluation.mapping.scoring import (
     Mapped,
     Transfer,
     detected_classes,
@@ -16,9 +19,6 @@ from lab.evaluation.mapping import (
     semantic_scores,
     transfer,
 )
-from lab.evaluation.mapping_pictures import with_maps
-from lab.evaluation.mapping_runs import score_places
-from lab.evaluation.places import Place
 from lab.evaluation.scores.instance import swallowed_classes
 from lab.simulation.imperfect import read_cache
 from ovip.scene.types import I64

@@ -15,7 +15,7 @@ from lab.evaluation.asking.questions import Question, absent_questions, present_
 from lab.evaluation.asking.stack import Mapped, copy_of, map_place, search, stack_over
 from lab.evaluation.asking.worlds import Place, WorldSpec, place_of, world_notes, worlds_of
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping_runs import in_processes
+from lab.evaluation.processes import in_processes
 from lab.evaluation.scores.absence import Confusion, Decision, confusion, half_of, wilson, within_budget
 from lab.figures.searches import DrawnSearch, draw_searches
 from lab.simulation.camera import EYE_HEIGHT

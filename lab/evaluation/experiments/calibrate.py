@@ -9,10 +9,10 @@ from functools import partial
 from pathlib import Path
 
 from lab.evaluation.experiment import TEST_SEED, Options, Result, Row
-from lab.evaluation.mapping import instance_columns, judged, mapped, semantic_scores, transfer
-from lab.evaluation.mapping_rows import scene_means
-from lab.evaluation.mapping_runs import in_processes
-from lab.evaluation.places_made import PlaceSpec, place_of, specs_of
+from lab.evaluation.mapping.making import PlaceSpec, place_of, specs_of
+from lab.evaluation.mapping.scoring import instance_columns, judged, mapped, semantic_scores, transfer
+from lab.evaluation.processes import in_processes
+from lab.evaluation.rows import scene_means
 from lab.figures.curves import draw_curves
 from lab.simulation.imperfect import read_cache
 from services.mapper.domain.object_map import MapParams
@@ -20,16 +20,20 @@ from services.mapper.domain.object_map import MapParams
 PLATEAU = 0.5
 """Points of the criterion within which values are as good as the best one."""
 
-CRITERION = "mean of strict PQ (percent) and strict F-mIoU over the scene mean"
+CRITERION = "mean of strict PQ, strict F-mIoU and strict recall of small objects (percent, scene mean)"
 
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """One setting: which part of a map's params has it, and the values it takes."""
+    """One setting: which part of a map's params has it, and the values it takes.
+
+    least: values below are measured and drawn, and never chosen.
+    """
 
     name: str
     part: str
     values: tuple[float, ...]
+    least: float = 0.0
 
     def put(self, params: MapParams, value: float) -> MapParams:
         """The params with this value."""
@@ -38,10 +42,12 @@ class Sweep:
 
 
 SWEEPS = (
-    Sweep("tau", "association", (0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.4, 1.6)),
+    # below 1 - alpha, looks alone would join like things a room apart, and pruning would not be exact
+    Sweep("tau", "association", (0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.4, 1.6), least=1.0),
     Sweep("merge_overlap", "upkeep", (0.2, 0.35, 0.5, 0.65, 0.8)),
     Sweep("merge_inside", "upkeep", (0.5, 0.6, 0.7, 0.8, 0.9)),
     Sweep("merge_similarity", "upkeep", (0.7, 0.75, 0.8, 0.85, 0.9, 0.95)),
+    Sweep("merge_iou", "upkeep", (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)),
     Sweep("confirm_frames", "upkeep", (2, 3, 4, 5, 6)),
 )
 
@@ -53,8 +59,7 @@ def run(options: Options) -> Result:
     for sweep in SWEEPS:
         found = _swept(sweep, params, specs, options.workers)
         scenes += found
-        means = scene_means(found)
-        chosen[sweep.name] = plateau_middle(sweep.values, [row["criterion"] for row in means])
+        chosen[sweep.name] = choice(sweep, [row["criterion"] for row in scene_means(found)])
         params = sweep.put(params, chosen[sweep.name])
     rows = scene_means(scenes)
     how = _how(specs, chosen)
@@ -69,6 +74,12 @@ def run(options: Options) -> Result:
 def training(options: Options) -> Options:
     """The options with homes that no figure is reported on: seeds that would reach the test homes' start at 0."""
     return options if options.seed + options.homes <= TEST_SEED else replace(options, seed=0)
+
+
+def choice(sweep: Sweep, scores: Sequence[float]) -> float:
+    """The plateau's middle among the values that may be chosen."""
+    allowed = [i for i, value in enumerate(sweep.values) if value >= sweep.least]
+    return plateau_middle([sweep.values[i] for i in allowed], [scores[i] for i in allowed])
 
 
 def plateau_middle(values: Sequence[float], scores: Sequence[float]) -> float:
@@ -103,7 +114,7 @@ def _scored(candidates: Sequence[tuple[str, MapParams]], spec: PlaceSpec) -> lis
             {
                 "config": config,
                 "scene": place.name,
-                "criterion": (100 * instances["PQ"] + strict.frequency_iou) / 2,
+                "criterion": _criterion(strict.frequency_iou, instances),
                 **strict.columns,
                 **instances,
                 "objects": len(scene.objects),
@@ -111,6 +122,10 @@ def _scored(candidates: Sequence[tuple[str, MapParams]], spec: PlaceSpec) -> lis
             }
         )
     return rows
+
+
+def _criterion(frequency_iou: float, instances: dict[str, float]) -> float:
+    return (frequency_iou + 100 * (instances["PQ"] + instances.get("recall_small", 0.0))) / 3
 
 
 def _how(specs: Sequence[PlaceSpec], chosen: dict[str, float]) -> str:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping import instance_columns, mapped, transfer
-from lab.evaluation.mapping_pictures import with_maps
-from lab.evaluation.mapping_runs import score_places
-from lab.evaluation.places import Place
+from lab.evaluation.mapping.pictures import with_maps
+from lab.evaluation.mapping.places import Place
+from lab.evaluation.mapping.runs import score_places
+from lab.evaluation.mapping.scoring import instance_columns, mapped, transfer
 from lab.simulation.imperfect import read_cache
 from ovip.scene.types import DetectionBatch
 from services.mapper.domain.presets import PRESETS

@@ -17,7 +17,7 @@ from lab.evaluation.asking.questions import Question, present_questions
 from lab.evaluation.asking.stack import Mapped, Search, copy_of, find, map_place, search, stack_over, the_map
 from lab.evaluation.asking.worlds import Place, WorldSpec, place_of, world_notes, worlds_of
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping_runs import in_processes
+from lab.evaluation.processes import in_processes
 from lab.evaluation.scores.navigation import Drive, identities, score_drives
 from lab.simulation.camera import EYE_HEIGHT
 from ovip.scene.answers import Answer

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping_runs import in_processes
-from lab.evaluation.places_made import PlaceSpec
+from lab.evaluation.mapping.making import PlaceSpec
+from lab.evaluation.processes import in_processes
 from lab.evaluation.regions.floors import floor_place_of, place_specs
 from lab.evaluation.regions.methods import METHODS
 from lab.evaluation.regions.plans import StoreyPlans, storey_plans

@@ -16,7 +16,7 @@ from lab.evaluation.asking.questions import Question, present_questions
 from lab.evaluation.asking.stack import find, map_place, stack_over, the_map
 from lab.evaluation.asking.worlds import Place, WorldSpec, place_of, world_notes, worlds_of
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping_runs import in_processes
+from lab.evaluation.processes import in_processes
 from lab.evaluation.scores.retrieval import Ranked, misses, misses_of_instance, success_rates
 from ovip.scene.answers import Answer
 from ovip.scene.types import F64, MapObject

@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping import instance_columns, judged, read_map, semantic_scores, transfer
-from lab.evaluation.mapping_diagnosis import diagnosed
-from lab.evaluation.mapping_runs import over_places
-from lab.evaluation.places import Place
+from lab.evaluation.mapping.diagnosis import diagnosed
+from lab.evaluation.mapping.places import Place
+from lab.evaluation.mapping.runs import over_places
+from lab.evaluation.mapping.scoring import instance_columns, judged, read_map, semantic_scores, transfer
 from lab.figures.curves import draw_curves
 from lab.simulation.imperfect import read_cache
 from services.mapper.domain.object_map import ObjectMap

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping import N_EXCLUDE, Judged, Mapped, judged, mapped, semantic_scores
-from lab.evaluation.mapping_pictures import with_maps
-from lab.evaluation.mapping_runs import score_places
-from lab.evaluation.places import Place
+from lab.evaluation.mapping.pictures import with_maps
+from lab.evaluation.mapping.places import Place
+from lab.evaluation.mapping.runs import score_places
+from lab.evaluation.mapping.scoring import N_EXCLUDE, Judged, Mapped, judged, mapped, semantic_scores
 from lab.simulation.imperfect import read_cache
 from services.mapper.domain.presets import PRESETS
 

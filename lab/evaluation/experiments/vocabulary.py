@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from lab.evaluation.asking.truth import Truth
 from lab.evaluation.asking.worlds import Place, WorldSpec, place_of, world_notes, worlds_of
 from lab.evaluation.experiment import Options, Result, Row
-from lab.evaluation.mapping_rows import scene_means
-from lab.evaluation.mapping_runs import in_processes
+from lab.evaluation.processes import in_processes
+from lab.evaluation.rows import scene_means
 from lab.evaluation.scores.vocabulary import Means, is_false, means_exactly, means_loosely, vocabulary_score
 from lab.simulation.imperfect import batch_of, gated
 from ovip.scene.types import F64, DetectionBatch, MapObject

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.evaluation.experiment import Options
-from lab.evaluation.mapping import mapped
-from lab.evaluation.places_made import PlaceSpec, place_of, specs_of
+from lab.evaluation.mapping.making import PlaceSpec, place_of, specs_of
+from lab.evaluation.mapping.scoring import mapped
 from lab.evaluation.scores.region_matching import NEAR, Room
 from lab.simulation.camera import CAMERA
 from lab.simulation.home import Area, Home, Storey, inside_polygon

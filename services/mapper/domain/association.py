@@ -18,14 +18,15 @@ NEW = -1
 class AssociationParams:
     """alpha, label_penalty (w_L): the paper's "Models and hyperparameters" table; a penalty of 0 is label-agnostic.
 
-    tau: a detection joins an object whose score exceeds it. The paper gives no number; 1.05 lets a detection of
-    the same label and like feature (cosine near 1) join from a small overlap on, and lets no other-label pair join.
+    tau: a detection joins an object whose score exceeds it. The paper gives no number. 1.0 was chosen by `ovip eval
+    calibrate` on simulated homes (docs/results.md has the curve), among values of at least 1 - alpha: below that, looks
+    alone could join two like things a room apart, and pruning would not be exact.
     spatial: the paper's is IoU; the others are ablations.
     """
 
     alpha: float = 0.0
     label_penalty: float = 0.5
-    tau: float = 1.05
+    tau: float = 1.0
     spatial: Spatial = Spatial.IOU
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ovip.errors import Corrupt, InvalidInput
-from ovip.scene.boxes import touching
+from ovip.scene.boxes import pairwise_iou, touching
 from ovip.scene.types import F32, F64, I64, U8, Box2, Detection, DetectionBatch, MapDelta, MapObject
 from services.mapper.domain.association import NEW, AssociationParams, Instances, associate
 from services.mapper.domain.cloud import VoxelCloud
@@ -350,11 +350,9 @@ class ObjectMap:
         return (-self._objects[object_id].frames, object_id)
 
     def _twin_of(self, o: _Object) -> str | None:
-        """The first object of like feature, and label where that counts, in the same place."""
+        """The first object that is the same thing: alike, and in the same place."""
         upkeep = self.params.upkeep
-        others = [
-            p for p in self._objects.values() if p is not o and (p.label == o.label or not upkeep.same_label)
-        ]
+        others = [p for p in self._objects.values() if p is not o]
         if not others:
             return None
         slack = np.array([-upkeep.reach] * 3 + [upkeep.reach] * 3)
@@ -366,7 +364,12 @@ class ObjectMap:
         return None
 
     def _same_place(self, o: _Object, p: _Object) -> bool:
+        """Where labels differ and count, only a box that is much the same will do."""
         upkeep = self.params.upkeep
+        if pairwise_iou(o.box[None], p.box[None])[0, 0] > upkeep.merge_iou:
+            return True
+        if o.label != p.label and upkeep.same_label:
+            return False
         if inside(o.box, p.box, self.params.voxel / 2) > upkeep.merge_inside:
             return True
         return overlap(o.cloud, p.cloud, upkeep.reach) > upkeep.merge_overlap

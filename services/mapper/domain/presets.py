@@ -20,6 +20,7 @@ _CONCEPTGRAPHS = MapParams(
         merge_overlap=0.7,
         merge_inside=float("inf"),
         merge_similarity=0.7,
+        merge_iou=float("inf"),
         reach=0.025,
         confirm_frames=3,
         cluster_radius=0.1,

@@ -20,9 +20,13 @@ class UpkeepParams:
     merge_inside: share of the smaller box's volume inside the other's, which decides where the clouds show opposite
     sides of a small thing and do not touch.
     merge_similarity: cosine that two objects to merge must have.
-    eager: merge what a batch made one at once, not at the next upkeep only. same_label: merge only objects of one
-    majority label. reach: metres within which a point lies on another cloud. confirm_frames: frames that must see an
-    object before readers get it. forget_after: batches without a view after which an unconfirmed object is dropped.
+    merge_iou: volume IoU of boxes above which objects of different labels merge too: one thing under two names, while
+    a cup on a table shares no such part of the table's box.
+    eager: merge what a batch made one at once, not at the next upkeep only.
+    same_label: by overlap, merge only objects of one majority label.
+    reach: metres within which a point lies on another cloud.
+    confirm_frames: frames that must see an object before readers get it.
+    forget_after: batches without a view after which an unconfirmed object is dropped.
     cluster_radius: metres between voxels of one cluster; smaller clusters than `cluster_share` of the largest go.
     """
 
@@ -30,6 +34,7 @@ class UpkeepParams:
     merge_overlap: float = 0.35
     merge_inside: float = 0.7
     merge_similarity: float = 0.85
+    merge_iou: float = 0.4
     reach: float = 0.04
     confirm_frames: int = 3
     forget_after: int = 60

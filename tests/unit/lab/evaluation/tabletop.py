@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.evaluation.places import Place
+from lab.evaluation.mapping.places import Place
 from ovip.scene.types import DetectionBatch
 from tests.builders import axis, batch, block, detection
 

@@ -1,7 +1,7 @@
 import pytest
 
 from lab.evaluation.experiment import TEST_SEED, Options
-from lab.evaluation.experiments.calibrate import SWEEPS, plateau_middle, training
+from lab.evaluation.experiments.calibrate import SWEEPS, Sweep, choice, plateau_middle, training
 from services.mapper.domain.object_map import MapParams
 
 
@@ -15,6 +15,13 @@ def test_the_middle_of_the_plateau_around_the_best_is_chosen() -> None:
 
 def test_a_second_peak_apart_from_the_best_does_not_pull_the_choice() -> None:
     assert plateau_middle((1, 2, 3, 4, 5), [50.0, 20.0, 50.2, 50.1, 50.3]) == 4
+
+
+def test_values_that_are_measured_only_are_never_chosen() -> None:
+    scores = [90.0, 80.0, 50.0, 60.0, 59.8]
+
+    assert choice(Sweep("tau", "association", (0.8, 0.9, 1.0, 1.1, 1.2), least=1.0), scores) == 1.1
+    assert choice(Sweep("tau", "association", (0.8, 0.9, 1.0, 1.1, 1.2)), scores) == 0.8
 
 
 @pytest.mark.parametrize("sweep", SWEEPS, ids=lambda sweep: sweep.name)

@@ -304,7 +304,7 @@ def test_merging_adds_the_accumulators() -> None:
     assert (table.first_seen_ns, table.last_seen_ns) == (1 * SECOND, 3 * SECOND)
 
 
-def test_things_of_other_labels_or_other_looks_never_merge_as_duplicates() -> None:
+def test_things_of_other_looks_never_merge_as_duplicates_whatever_their_labels() -> None:
     place = {"low": (0, 0, 0), "high": (1, 0.6, 0.04)}
     named = _map_of(
         *(
@@ -321,6 +321,31 @@ def test_things_of_other_labels_or_other_looks_never_merge_as_duplicates() -> No
 
     assert len(named.objects()) == 2
     assert len(looking.objects()) == 2
+
+
+def test_one_thing_under_two_names_becomes_one_once_its_boxes_are_much_the_same() -> None:
+    """0..1 against 0.55..2 is an IoU of 0.225, and 0.225 + 1 - 0.5 joins nothing; grown to 0..1.7 it is 0.575."""
+    sofa, couch = (
+        detection("sofa", (0, 0, 0), (1, 0.6, 0.6)),
+        detection("couch", (0.55, 0, 0), (2, 0.6, 0.6)),
+    )
+    made = _map_of(batch(1, sofa), batch(2, couch))
+    assert _ids(made) == ["o000001", "o000002"]
+
+    delta = made.integrate(batch(3, detection("sofa", (0.3, 0, 0), (1.7, 0.6, 0.6))))
+
+    assert delta.aliases == {"o000002": "o000001"}
+    (one,) = made.objects()
+    assert (one.label, one.label_counts) == ("sofa", {"sofa": 2, "couch": 1})
+
+
+def test_like_things_of_two_names_that_only_touch_stay_two() -> None:
+    """A bookcase beside a cupboard, alike and touching: by overlap only one label merges."""
+    left, right = _long_table(0, 1), detection("desk", (1.0, 0, 0), (2, 0.6, 0.04))
+
+    made = _map_of(*(batch(n, left, right) for n in range(1, 25)))
+
+    assert sorted(o.label for o in made.objects()) == ["desk", "table"]
 
 
 # Wrong batches

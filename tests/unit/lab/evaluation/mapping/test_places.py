@@ -9,10 +9,10 @@ import pytest
 
 from lab.evaluation.experiment import Options
 from lab.evaluation.experiments import ablation, instance, scaling, semantic
-from lab.evaluation.mapping_runs import in_processes
-from lab.evaluation.places import Place
-from lab.evaluation.places_made import PlaceParams, PlaceSpec, make_place, place_of, specs_of
-from lab.evaluation.places_sources import Source
+from lab.evaluation.mapping.making import PlaceParams, PlaceSpec, make_place, place_of, specs_of
+from lab.evaluation.mapping.places import Place
+from lab.evaluation.mapping.sources import Source
+from lab.evaluation.processes import in_processes
 from lab.evaluation.scores.semantic import REPLICA_CLASSES
 from lab.simulation import SimulatedRoom, pose_looking
 from lab.simulation.home import Home, HomeObject, Material, Mesh, Storey
@@ -237,7 +237,7 @@ def _write_mesh(folder: Path, parts: list[tuple[F64, int]]) -> None:
 
 
 def _write_recording(folder: Path, root: Path) -> None:
-    from lab.evaluation.places_replica import _home
+    from lab.evaluation.mapping.replica import _home
     from lab.simulation.renderer import Renderer
     from ovip.recordings.replica_mesh import read_replica_mesh
 

@@ -1,6 +1,6 @@
 import pytest
 
-from lab.evaluation.mapping_rows import scene_means
+from lab.evaluation.rows import scene_means
 
 SCENES = ("room0", "room1", "room2", "office0", "office2", "office3")
 

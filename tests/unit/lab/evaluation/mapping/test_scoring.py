@@ -4,7 +4,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lab.evaluation.mapping import (
+from lab.evaluation.mapping.diagnosis import diagnosed
+from lab.evaluation.mapping.places import Place, Storey, load_place, save_place
+from lab.evaluation.mapping.scoring import (
     Mapped,
     Transfer,
     class_of_words,
@@ -16,8 +18,6 @@ from lab.evaluation.mapping import (
     semantic_scores,
     transfer,
 )
-from lab.evaluation.mapping_diagnosis import diagnosed
-from lab.evaluation.places import Place, Storey, load_place, save_place
 from lab.evaluation.scores.instance import NOTHING
 from services.mapper.domain.object_map import MapParams
 from tests.builders import axis, batch, detection, same
