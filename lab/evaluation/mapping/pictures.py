@@ -14,17 +14,30 @@ from lab.evaluation.experiment import Options, Result
 from lab.evaluation.mapping.places import Place, Storey
 from lab.evaluation.mapping.runs import over_places
 from lab.evaluation.mapping.scoring import Mapped, mapped
+from lab.figures.homes import draw_home
 from lab.figures.maps import MapLayer, draw_map
+from lab.simulation.generate import make_home
 from lab.simulation.imperfect import read_cache
 from services.mapper.domain.presets import PRESETS
 
+HOMES_DRAWN = 2
+
 
 def with_maps(result: Result, options: Options, configs: Sequence[str] = ("overlap", "ours")) -> Result:
-    """The result with a picture of each place's map by each configuration, where figures are asked for."""
+    """The result with pictures, where figures are asked for: the first homes, and every map by each configuration."""
     if options.figures is None:
         return result
+    homes = draw_homes(options) if options.dataset is None else []
     drawn = over_places(partial(draw_maps, options.figures, tuple(configs)), options)
-    return replace(result, figures=(*result.figures, *(path for paths in drawn for path in paths)))
+    return replace(result, figures=(*result.figures, *homes, *(path for paths in drawn for path in paths)))
+
+
+def draw_homes(options: Options) -> list[Path]:
+    """Writes home_NAME.png of the first two simulated homes: two views, and every storey from above."""
+    assert options.figures is not None
+    options.figures.mkdir(parents=True, exist_ok=True)
+    homes = [make_home(options.seed + i) for i in range(min(HOMES_DRAWN, options.homes))]
+    return [draw_home(home, options.figures / f"home_{_slug(home.name)}.png") for home in homes]
 
 
 def draw_maps(folder: Path, configs: Sequence[str], place: Place) -> list[Path]:
