@@ -24,7 +24,7 @@ def refused(done: subprocess.CompletedProcess[str]) -> str:
 
 def test_a_path_that_is_not_there(cli: Cli, tmp_path: Path) -> None:
     line = refused(cli.run("replay", tmp_path / "nowhere", "--layout", "tum", "--scene", "s"))
-    assert "expected a folder" in line
+    assert "expected a recording laid out as tum" in line and "got nothing there" in line
 
 
 def test_the_wrong_layout_is_told_the_right_one(cli: Cli, room_recording: Path) -> None:
