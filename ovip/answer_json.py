@@ -22,7 +22,7 @@ from ovip.scene.answers import (
     Viewpoint,
 )
 from ovip.scene.boxes import transformed_bounds
-from ovip.scene.types import F32, F64, Box2, MapObject
+from ovip.scene.types import F32, F64, Box2, MapObject, Relation
 
 _DECIMALS = 4
 
@@ -118,6 +118,15 @@ def object_to_json(obj: MapObject, world_from_source: F64 | None = None) -> dict
         "frame_id": obj.best_frame_id or None,
         "box2": _box2(obj.best_box2) if obj.best_frame_id else None,
         "version": obj.version,
+        "revision": obj.revision,
+        "presence": obj.presence.value,
+        "pinned": obj.pinned,
+        "label_given": obj.label_given,
+        "relations": [_relation(relation) for relation in obj.relations],
+        "moves": [
+            {"timestamp_ns": move.timestamp_ns, "position": numbers(frame.points(move.origin)[0])}
+            for move in obj.moves
+        ],
     }
 
 
@@ -144,6 +153,14 @@ def numbers(values: F32 | F64) -> Any:
 def number(value: float) -> float | None:
     """A rounded number; None where it is not finite (JSON has no word for that)."""
     return round(float(value), _DECIMALS) if np.isfinite(value) else None
+
+
+def _relation(relation: Relation) -> dict[str, Any]:
+    return {
+        "kind": relation.kind.value,
+        "object_id": relation.other_id,
+        "evidence": {name: number(value) for name, value in sorted(relation.evidence.items())},
+    }
 
 
 def _candidate(candidate: Candidate, frame: OutputFrame) -> dict[str, Any]:

@@ -7,6 +7,7 @@ OvipError
 ├── Conflict                made on an older version, or someone else holds it    ABORTED              409
 │   └── LeaseLost           another writer took over; stop writing                ABORTED              409
 ├── NotConfigured           a setting is missing; names it                        FAILED_PRECONDITION  409
+├── Unreliable              what was measured does not settle it; says what was   FAILED_PRECONDITION  409
 ├── NotAuthorized           missing or wrong key                                  UNAUTHENTICATED      401
 ├── Exhausted               a budget or rate limit is used up; says when again    RESOURCE_EXHAUSTED   429
 ├── Unavailable             a service or the store cannot be reached; try again   UNAVAILABLE          503
@@ -71,6 +72,14 @@ class NotConfigured(OvipError):
     code = "FAILED_PRECONDITION"
     http = 409
     slug = "not-configured"
+
+
+class Unreliable(OvipError):
+    """What was measured does not settle what was asked; the message says what was measured and what would do."""
+
+    code = "FAILED_PRECONDITION"
+    http = 409
+    slug = "unreliable"
 
 
 class NotAuthorized(OvipError):

@@ -1,12 +1,13 @@
 """Every key in the store, in one place; all keys of one scene share one hash tag, so one cluster slot.
 
 SCENES                        set of scene names
-{default/SCENE}:stream:NAME   a product's log: frames, detections, map, regions
+{default/SCENE}:stream:NAME   a product's log: frames, detections, map, regions; edits, snapshots of the map
+{default/SCENE}:once:NAME     hash, key of an entry -> its id in the log NAME, where entries are kept once a key
 {default/SCENE}:sequences     hash, "robot.session" -> last sequence in the frame log
 {default/SCENE}:frame-ids     hash, frame id -> id of its entry in the frame log
 {default/SCENE}:lease:STAGE   the one writer of a stage: owner, with expiry
 {default/SCENE}:fence:STAGE   counts lease holders; a writer with an older number is refused
-{default/SCENE}:state:STAGE   hash: cursor (last input committed) and the stage's small values
+{default/SCENE}:state:STAGE   hash: cursors (last input committed of each log) and the stage's small values
 {default/SCENE}:doc:KIND      hash, name -> revision and bytes of a compare-and-set document
 bucket:NAME, counter:NAME, cache:KEY    the gateway's budgets, statistics and replies
 """
@@ -47,6 +48,10 @@ def sequences(scene: str) -> str:
 
 def frame_ids(scene: str) -> str:
     return f"{_tag(scene)}:frame-ids"
+
+
+def once(scene: str, name: str) -> str:
+    return f"{_tag(scene)}:once:{name}"
 
 
 def lease(scene: str, stage: str) -> str:

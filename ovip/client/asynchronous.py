@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequence
 from types import TracebackType
 from typing import Literal
 
@@ -19,9 +19,12 @@ from ovip.client.streaming import (
 )
 from ovip.clients import MapperClient, PerceptionClient, RegionsClient, RetrievalClient, connect
 from ovip.errors import Corrupt, DeadlineExceeded, Unavailable
+from ovip.ids import uuid7
 from ovip.keys import log_order
 from ovip.scene.answers import Answer, Observation, PerceptionStatus, Query, SearchEvent, Viewpoint
-from ovip.scene.types import Partition, SceneMap
+from ovip.scene.edits import Delete, Edit, EditRequest, Merge, Pin, Rename, Split
+from ovip.scene.types import F64, MapDelta, Partition, SceneMap
+from ovip.scene.versions import MapDiff, Verification
 
 
 class AsyncClient:
@@ -125,9 +128,61 @@ class AsyncClient:
                 return search_id, event
         raise Corrupt("retrieval ended without an answer")
 
-    async def get_map(self, scene: str) -> SceneMap:
-        """The confirmed objects of a scene."""
-        return await self.mapper.get_map(scene)
+    async def get_map(self, scene: str, at_version: int = 0, include_departed: bool = False) -> SceneMap:
+        """The confirmed objects of a scene, as they stand or stood at a version; those gone only where asked for."""
+        return await self.mapper.get_map(scene, at_version=at_version, include_departed=include_departed)
+
+    async def diff(self, scene: str, from_version: int, to_version: int = 0) -> MapDiff:
+        """What differs between two versions of a map (to_version 0: as it stands)."""
+        return await self.mapper.diff(scene, from_version, to_version)
+
+    async def verify(self, scene: str) -> Verification:
+        """Rebuilds a map from its log and compares: `.holds` says whether it is the same, bit for bit."""
+        return await self.mapper.verify(scene)
+
+    async def edit_map(
+        self, scene: str, edit: Edit, made_on_version: int, operator: str = "", edit_id: str = ""
+    ) -> MapDelta:
+        """An operator's edit, made on the map as it was at `made_on_version`.
+
+        Conflict where what it edits has changed since: read the map again and decide again. edit_id: the same again
+        is done once; a new one where empty.
+        """
+        return await self.mapper.edit(scene, EditRequest(edit_id or uuid7(), made_on_version, operator, edit))
+
+    async def rename(
+        self, scene: str, object_id: str, label: str, made_on_version: int, operator: str = ""
+    ) -> MapDelta:
+        """Calls an object `label` from now on; an empty label lets the detections decide again."""
+        return await self.edit_map(scene, Rename(object_id, label), made_on_version, operator)
+
+    async def merge(
+        self, scene: str, keep_id: str, merged_ids: Sequence[str], made_on_version: int, operator: str = ""
+    ) -> MapDelta:
+        """Makes all of them one object, known as `keep_id`."""
+        return await self.edit_map(scene, Merge(keep_id, tuple(merged_ids)), made_on_version, operator)
+
+    async def split(
+        self,
+        scene: str,
+        object_id: str,
+        part: F64,
+        made_on_version: int,
+        part_label: str = "",
+        operator: str = "",
+    ) -> MapDelta:
+        """Makes what of an object lies in `part` `(6,)` (low, high, world metres) an object of its own."""
+        return await self.edit_map(scene, Split(object_id, part, part_label), made_on_version, operator)
+
+    async def delete(self, scene: str, object_id: str, made_on_version: int, operator: str = "") -> MapDelta:
+        """Says that there is no such thing, whatever is detected there."""
+        return await self.edit_map(scene, Delete(object_id), made_on_version, operator)
+
+    async def pin(
+        self, scene: str, object_id: str, made_on_version: int, pinned: bool = True, operator: str = ""
+    ) -> MapDelta:
+        """Keeps upkeep from merging an object away or giving it up; `pinned=False` lets it again."""
+        return await self.edit_map(scene, Pin(object_id, pinned), made_on_version, operator)
 
     async def get_regions(self, scene: str) -> Partition:
         """The newest partition of a scene's floors."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Iterator
 
 import cv2
@@ -9,6 +10,7 @@ import numpy as np
 
 from ovip.client.streaming import Hello, OutgoingDetection, OutgoingFrame
 from ovip.recordings import OnboardDetection, RecordedFrame, Recording
+from ovip.scene.types import F32
 
 
 def hello_of(recording: Recording, scene: str, robot_id: str) -> Hello:
@@ -32,10 +34,16 @@ def outgoing(frames: Iterable[RecordedFrame]) -> Iterator[OutgoingFrame]:
 
 
 def _detection(d: OnboardDetection) -> OutgoingDetection:
-    feature = () if d.feature is None else tuple(float(v) for v in d.feature)
+    seen = OutgoingDetection(
+        d.label, d.score, d.box2, feature=_numbers(d.feature), second_feature=_numbers(d.second_feature)
+    )
     if d.mask is None or not d.mask.any():
-        return OutgoingDetection(d.label, d.score, d.box2, feature=feature)
+        return seen
     rows, columns = np.flatnonzero(d.mask.any(axis=1)), np.flatnonzero(d.mask.any(axis=0))
     part = d.mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     png = cv2.imencode(".png", part.astype(np.uint8) * 255)[1].tobytes()
-    return OutgoingDetection(d.label, d.score, d.box2, png, int(columns[0]), int(rows[0]), feature)
+    return dataclasses.replace(seen, mask_png=png, mask_x=int(columns[0]), mask_y=int(rows[0]))
+
+
+def _numbers(feature: F32 | None) -> tuple[float, ...]:
+    return () if feature is None else tuple(float(value) for value in feature)

@@ -36,7 +36,10 @@ class Hello:
 
 @dataclass(frozen=True, slots=True)
 class OutgoingDetection:
-    """A thing that the robot saw itself. mask_png: mask of the pixels from `(mask_x, mask_y)` on; feature: `(D,)`."""
+    """A thing that the robot saw itself. mask_png: mask of the pixels from `(mask_x, mask_y)` on; feature: `(D,)`.
+
+    second_feature: `(E,)` of a second encoder (DINO family), which may only veto merges.
+    """
 
     label: str
     score: float
@@ -45,6 +48,7 @@ class OutgoingDetection:
     mask_x: int = 0
     mask_y: int = 0
     feature: tuple[float, ...] = ()
+    second_feature: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -335,7 +339,11 @@ def _frame_message(frame: OutgoingFrame) -> perception_pb2.StreamFramesRequest:
 
 def _detection_message(d: OutgoingDetection) -> types_pb2.Detection2D:
     message = types_pb2.Detection2D(
-        label=d.label, score=d.score, box=codec.box2_message(d.box), feature=d.feature
+        label=d.label,
+        score=d.score,
+        box=codec.box2_message(d.box),
+        feature=d.feature,
+        second_feature=d.second_feature,
     )
     if d.mask_png:
         message.mask.x, message.mask.y, message.mask.png = d.mask_x, d.mask_y, d.mask_png

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Awaitable, Callable, Coroutine, Iterable
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
 from types import TracebackType
 from typing import Any, Literal, TypeVar
 
@@ -12,7 +12,9 @@ from ovip.client.addresses import Addresses
 from ovip.client.asynchronous import AsyncClient
 from ovip.client.streaming import Hello, OutgoingFrame, StreamEvent, StreamReport
 from ovip.scene.answers import Answer, Observation, Query, SearchEvent, Viewpoint
-from ovip.scene.types import Partition, SceneMap
+from ovip.scene.edits import Edit
+from ovip.scene.types import F64, MapDelta, Partition, SceneMap
+from ovip.scene.versions import MapDiff, Verification
 
 T = TypeVar("T")
 
@@ -69,9 +71,57 @@ class Client:
 
         return self._run(self._client.search(query, in_thread))
 
-    def get_map(self, scene: str) -> SceneMap:
-        """The confirmed objects of a scene."""
-        return self._run(self._client.get_map(scene))
+    def get_map(self, scene: str, at_version: int = 0, include_departed: bool = False) -> SceneMap:
+        """The confirmed objects of a scene, as they stand or stood at a version; those gone only where asked for."""
+        return self._run(self._client.get_map(scene, at_version, include_departed))
+
+    def diff(self, scene: str, from_version: int, to_version: int = 0) -> MapDiff:
+        """What differs between two versions of a map (to_version 0: as it stands)."""
+        return self._run(self._client.diff(scene, from_version, to_version))
+
+    def verify(self, scene: str) -> Verification:
+        """Rebuilds a map from its log and compares: `.holds` says whether it is the same, bit for bit."""
+        return self._run(self._client.verify(scene))
+
+    def edit_map(
+        self, scene: str, edit: Edit, made_on_version: int, operator: str = "", edit_id: str = ""
+    ) -> MapDelta:
+        """An operator's edit, made on the map as it was at `made_on_version`. See `AsyncClient.edit_map`."""
+        return self._run(self._client.edit_map(scene, edit, made_on_version, operator, edit_id))
+
+    def rename(
+        self, scene: str, object_id: str, label: str, made_on_version: int, operator: str = ""
+    ) -> MapDelta:
+        """Calls an object `label` from now on; an empty label lets the detections decide again."""
+        return self._run(self._client.rename(scene, object_id, label, made_on_version, operator))
+
+    def merge(
+        self, scene: str, keep_id: str, merged_ids: Sequence[str], made_on_version: int, operator: str = ""
+    ) -> MapDelta:
+        """Makes all of them one object, known as `keep_id`."""
+        return self._run(self._client.merge(scene, keep_id, merged_ids, made_on_version, operator))
+
+    def split(
+        self,
+        scene: str,
+        object_id: str,
+        part: F64,
+        made_on_version: int,
+        part_label: str = "",
+        operator: str = "",
+    ) -> MapDelta:
+        """Makes what of an object lies in `part` `(6,)` (low, high, world metres) an object of its own."""
+        return self._run(self._client.split(scene, object_id, part, made_on_version, part_label, operator))
+
+    def delete(self, scene: str, object_id: str, made_on_version: int, operator: str = "") -> MapDelta:
+        """Says that there is no such thing, whatever is detected there."""
+        return self._run(self._client.delete(scene, object_id, made_on_version, operator))
+
+    def pin(
+        self, scene: str, object_id: str, made_on_version: int, pinned: bool = True, operator: str = ""
+    ) -> MapDelta:
+        """Keeps upkeep from merging an object away or giving it up; `pinned=False` lets it again."""
+        return self._run(self._client.pin(scene, object_id, made_on_version, pinned, operator))
 
     def get_regions(self, scene: str) -> Partition:
         """The newest partition of a scene's floors."""

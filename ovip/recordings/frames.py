@@ -14,8 +14,8 @@ RgbEncoding = Literal["jpeg", "png"]
 class OnboardDetection:
     """One thing that the robot itself saw in a frame.
 
-    score: 0..1. mask: `(H, W)` of the whole image, None = only the box is known. feature: `(D,)`, None = not
-    computed.
+    score: 0..1. mask: `(H, W)` of the whole image, None = only the box is known. feature: `(D,)`, and second_feature:
+    `(E,)` of a second encoder (DINO family), None = not computed.
     """
 
     label: str
@@ -23,6 +23,7 @@ class OnboardDetection:
     box2: Box2
     mask: Bools | None = None
     feature: F32 | None = None
+    second_feature: F32 | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

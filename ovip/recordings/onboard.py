@@ -1,8 +1,8 @@
 """What a robot detected on board, as JSON beside a recording's frame: one file a frame, masks as run lengths.
 
 `{"detections": [{"label", "score", "box": [x0, y0, x1, y1], "mask": {"size": [H, W], "counts": [...]},
-"feature": [...]}]}`; mask and feature may be absent. The mask is COCO's uncompressed run-length form: lengths
-of runs that take turns, outside first, down the columns from the left.
+"feature": [...], "second_feature": [...]}]}`; mask and features may be absent. The mask is COCO's uncompressed
+run-length form: lengths of runs that take turns, outside first, down the columns from the left.
 """
 
 from __future__ import annotations
@@ -75,15 +75,17 @@ def _detection(item: object, path: Path) -> OnboardDetection:
         score=json_number(item, "score", path),
         box2=Box2(*map(float, box)),
         mask=None if mask is None else decode_runs(mask, str(path)),
-        feature=_feature(item.get("feature"), path),
+        feature=_feature(item, "feature", path),
+        second_feature=_feature(item, "second_feature", path),
     )
 
 
-def _feature(values: object, path: Path) -> F32 | None:
+def _feature(item: dict[str, object], name: str, path: Path) -> F32 | None:
+    values = item.get(name)
     if values is None:
         return None
     if not (isinstance(values, list) and values and all(isinstance(value, int | float) for value in values)):
-        raise InvalidInput(f"{path}: expected 'feature' as a list of numbers, got {values!r:.80}")
+        raise InvalidInput(f"{path}: expected {name!r} as a list of numbers, got {values!r:.80}")
     return np.asarray(values, dtype=np.float32)
 
 
@@ -96,6 +98,7 @@ def _plain(detection: OnboardDetection) -> dict[str, object]:
     }
     if detection.mask is not None:
         plain["mask"] = encode_runs(detection.mask)
-    if detection.feature is not None:
-        plain["feature"] = detection.feature.tolist()
+    for name, feature in (("feature", detection.feature), ("second_feature", detection.second_feature)):
+        if feature is not None:
+            plain[name] = feature.tolist()
     return plain

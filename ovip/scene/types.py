@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +15,9 @@ U16 = npt.NDArray[np.uint16]
 I32 = npt.NDArray[np.int32]
 I64 = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
+
+NEAREST_BLOCK = 4
+"""Pixels along the edge of a block of `DetectionBatch.nearest`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +67,8 @@ class Detection:
     """One mask in one frame, lifted to 3D.
 
     box: `(6,)` float64, low then high corner, world metres. feature: `(D,)` float32, unit length.
-    points: `(N, 3)` float32 world metres. colors: `(N, 3)` uint8 RGB.
+    points: `(N, 3)` float32 world metres. colors: `(N, 3)` uint8 RGB. second_feature: `(E,)` float32 of a second
+    encoder (DINO family), unit length, which may only veto merges; empty where none looked.
     """
 
     detection_id: str
@@ -74,13 +79,16 @@ class Detection:
     feature: F32
     points: F32
     colors: U8
+    second_feature: F32 = field(default_factory=lambda: np.zeros(0, np.float32))
 
 
 @dataclass(frozen=True, slots=True)
 class DetectionBatch:
     """Everything found in one frame for the words grounded in it.
 
-    surface: `(N, 3)` float32, a coarse cloud of all of the frame's depth; empty where `late`.
+    surface: `(N, 3)` float32, a coarse cloud of all of the frame's depth. nearest: `(h, w)` float32, the nearest depth
+    in metres measured in each block of NEAREST_BLOCK x NEAREST_BLOCK pixels, 0 where there is too little of it (what
+    the frame saw through). Both empty where `late`.
     """
 
     frame_id: str
@@ -91,6 +99,40 @@ class DetectionBatch:
     surface: F32
     words: tuple[str, ...] = ()
     late: bool = False
+    nearest: F32 = field(default_factory=lambda: np.zeros((0, 0), np.float32))
+
+
+class Presence(StrEnum):
+    """Whether an object is where the map has it: later depth may have seen through its place."""
+
+    PRESENT = "present"
+    MOVED_OR_REMOVED = "moved_or_removed"
+
+
+class RelationKind(StrEnum):
+    """How an object stands to another, by geometry alone."""
+
+    ON = "on"
+    IN = "in"
+    NEXT_TO = "next_to"
+    ATTACHED_TO = "attached_to"
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """Its holder stands in a relation to `other_id`. evidence: what was measured, by name (metres or shares)."""
+
+    kind: RelationKind
+    other_id: str
+    evidence: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """An object was recognised at another place. origin: its `(3,)` centroid before, world metres."""
+
+    timestamp_ns: int
+    origin: F64
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +140,9 @@ class MapObject:
     """One mapped object, the paper's o_j, as readers see it.
 
     centroid: `(3,)`; box: `(6,)` low then high, world metres. feature: `(D,)` unit. mean_color: `(3,)` RGB 0..255.
+    frames: different frames that saw it. version: the map's, when anything of it last changed; revision: the map's,
+    when last it was born, renamed, merged, split, moved, given up or edited (what an operator's edit must know of).
+    pinned: upkeep leaves it alone. label_given: its label is an operator's.
     """
 
     object_id: str
@@ -116,6 +161,12 @@ class MapObject:
     best_frame_id: str
     best_box2: Box2
     version: int
+    revision: int = 0
+    presence: Presence = Presence.PRESENT
+    pinned: bool = False
+    label_given: bool = False
+    relations: tuple[Relation, ...] = ()
+    moves: tuple[Move, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,16 +182,34 @@ class SceneMap:
     applied_log_id: str
 
 
+class StepKind(StrEnum):
+    """What made a version of a map: a frame's detections, upkeep, an operator's edit, a map joined, new settings."""
+
+    FRAME = "frame"
+    UPKEEP = "upkeep"
+    EDIT = "edit"
+    JOIN = "join"
+    SETTINGS = "settings"
+
+
 @dataclass(frozen=True, slots=True)
 class MapDelta:
-    """What one commit changed: object ids, and losers -> survivors."""
+    """What one version changed: object ids, and losers -> survivors.
+
+    removed: gone for good, as noise or by an operator. departed: found moved or removed; returned: seen again there;
+    moved: recognised at another place. Those three are updated, too.
+    """
 
     version: int
     frame_id: str
+    kind: StepKind = StepKind.FRAME
     created: tuple[str, ...] = ()
     updated: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
     aliases: dict[str, str] = field(default_factory=dict)
+    departed: tuple[str, ...] = ()
+    returned: tuple[str, ...] = ()
+    moved: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

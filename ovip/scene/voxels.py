@@ -12,8 +12,13 @@ _OFFSET = 1 << (_BITS - 1)
 
 def voxel_keys(points: F32 | F64, size: float) -> I64:
     """One int64 key `(N,)` per point `(N, 3)`: the voxel of edge `size` metres that holds it."""
-    cells = np.floor(np.asarray(points, np.float64) / size).astype(np.int64) + _OFFSET
-    return (cells[:, 0] << (2 * _BITS)) | (cells[:, 1] << _BITS) | cells[:, 2]
+    return pack_cells(np.floor(np.asarray(points, np.float64) / size).astype(np.int64))
+
+
+def pack_cells(cells: I64 | I32) -> I64:
+    """One int64 key `(N,)` per integer cell `(N, 3)`; cells in order of x, then y, then z have ascending keys."""
+    shifted = cells.astype(np.int64) + _OFFSET
+    return (shifted[:, 0] << (2 * _BITS)) | (shifted[:, 1] << _BITS) | shifted[:, 2]
 
 
 def voxel_cells(keys: I64) -> I32:

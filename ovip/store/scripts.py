@@ -46,40 +46,74 @@ if redis.call('HGET', KEYS[1], 'fence') ~= ARGV[2] then return 0 end
 return redis.call('DEL', KEYS[1])
 """
 
-# A stage's step: fence still ours and input newer than the cursor -> append, put, move the cursor.
+# Appends an entry unless its key has one already. KEYS log, hash of keys. ARGV key, field, value, ...
+# -> {entry id, 1 where it was there}
+APPEND_ONCE = """
+local known = redis.call('HGET', KEYS[2], ARGV[1])
+if known then return {known, 1} end
+local fields = {}
+for i = 2, #ARGV do fields[#fields + 1] = ARGV[i] end
+local id = redis.call('XADD', KEYS[1], '*', unpack(fields))
+redis.call('HSET', KEYS[2], ARGV[1], id)
+return {id, 0}
+"""
+
+# A stage's step: fence still ours and every input newer than its cursor -> append, put, move the cursors.
 # KEYS lease, state, then one stream per append.
-# ARGV owner, fence, input id, number of puts, put name, put value, ..., then per append: number of words, words
-# -> {1 applied | 0 already applied | -1 lease lost, entry ids ...}
+# ARGV owner, fence, number of cursors, cursor field, input id, ..., number of puts, put name, put value, ...,
+#      then per append: entry id or *, number of words, words
+# -> {1 applied | 0 already applied | -1 lease lost | -2 some cursors are there, some are not, entry ids ...}
 COMMIT = """
 local function parts(id)
   local ms, seq = string.match(id, '^(%d+)-(%d+)$')
   return tonumber(ms), tonumber(seq)
 end
+local function after(id, other)
+  local ms, seq = parts(id)
+  local other_ms, other_seq = parts(other)
+  return ms > other_ms or (ms == other_ms and seq > other_seq)
+end
 if redis.call('HGET', KEYS[1], 'owner') ~= ARGV[1] or redis.call('HGET', KEYS[1], 'fence') ~= ARGV[2] then
   return {-1}
 end
-local cursor = redis.call('HGET', KEYS[2], 'cursor') or '0-0'
-local ms, seq = parts(ARGV[3])
-local done_ms, done_seq = parts(cursor)
-if ms < done_ms or (ms == done_ms and seq <= done_seq) then return {0} end
+local cursors = tonumber(ARGV[3])
+local ahead = 0
+for i = 1, cursors do
+  local cursor = redis.call('HGET', KEYS[2], ARGV[2 + 2 * i]) or '0-0'
+  if after(ARGV[3 + 2 * i], cursor) then ahead = ahead + 1 end
+end
+if ahead == 0 then return {0} end
+if ahead < cursors then return {-2} end
+local puts = 4 + 2 * cursors
+local first = puts + 1 + 2 * tonumber(ARGV[puts])
+local at = first
+local newest = {}
 for k = 3, #KEYS do  -- a script that fails half way keeps what it wrote before
   local kind = redis.call('TYPE', KEYS[k]).ok
   if kind ~= 'none' and kind ~= 'stream' then return redis.error_reply('ERR ' .. KEYS[k] .. ' is no log') end
+  if ARGV[at] ~= '*' then
+    if not newest[KEYS[k]] then
+      local last = redis.call('XREVRANGE', KEYS[k], '+', '-', 'COUNT', 1)
+      newest[KEYS[k]] = last[1] and last[1][1] or '0-0'
+    end
+    if not after(ARGV[at], newest[KEYS[k]]) then
+      return redis.error_reply('ERR ' .. KEYS[k] .. ' is already at ' .. newest[KEYS[k]])
+    end
+    newest[KEYS[k]] = ARGV[at]
+  end
+  at = at + 2 + tonumber(ARGV[at + 1])
 end
-local at = 5
-for _ = 1, tonumber(ARGV[4]) do
-  redis.call('HSET', KEYS[2], 'v:' .. ARGV[at], ARGV[at + 1])
-  at = at + 2
-end
+for i = puts + 1, first - 1, 2 do redis.call('HSET', KEYS[2], 'v:' .. ARGV[i], ARGV[i + 1]) end
 local reply = {1}
+at = first
 for k = 3, #KEYS do
-  local n = tonumber(ARGV[at])
+  local n = tonumber(ARGV[at + 1])
   local fields = {}
-  for i = at + 1, at + n do fields[#fields + 1] = ARGV[i] end
-  at = at + n + 1
-  reply[#reply + 1] = redis.call('XADD', KEYS[k], '*', unpack(fields))
+  for i = at + 2, at + 1 + n do fields[#fields + 1] = ARGV[i] end
+  reply[#reply + 1] = redis.call('XADD', KEYS[k], ARGV[at], unpack(fields))
+  at = at + 2 + n
 end
-redis.call('HSET', KEYS[2], 'cursor', ARGV[3])
+for i = 1, cursors do redis.call('HSET', KEYS[2], ARGV[2 + 2 * i], ARGV[3 + 2 * i]) end
 return reply
 """
 

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import re
-from collections.abc import AsyncIterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import redis.asyncio as redis
@@ -21,62 +19,12 @@ from ovip.config import KernelSettings
 from ovip.errors import Conflict, InvalidInput, LeaseLost, Unavailable
 from ovip.store import scripts
 from ovip.store.blobs import BlobStore, open_blobs
+from ovip.store.dialect import CURSOR, cursor_field, entries_of, logs_of, spoken, words_of_step
 from ovip.store.embedded import EmbeddedServer
+from ovip.store.values import Append, Appended, Committed, Document, Entry, Ingested, Lease
 
 START = "0-0"
 _LOG_ID = re.compile(r"[0-9]{1,15}-[0-9]{1,15}")  # numbers that Lua's doubles hold exactly
-
-
-@dataclass(frozen=True, slots=True)
-class Entry:
-    """One entry of a log."""
-
-    id: str
-    fields: dict[str, bytes]
-
-
-@dataclass(frozen=True, slots=True)
-class Append:
-    """What a step adds to a log."""
-
-    stream: str
-    fields: Mapping[str, bytes | str | int]
-
-
-@dataclass(frozen=True, slots=True)
-class Ingested:
-    """Where a frame is in the log; `log_id` is empty for a sequence that was passed over."""
-
-    log_id: str
-    duplicate: bool
-    length: int
-
-
-@dataclass(frozen=True, slots=True)
-class Lease:
-    """The right to write one stage of one scene, until it expires or another takes it."""
-
-    scene: str
-    stage: str
-    owner: str
-    fence: int
-    ttl_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class Committed:
-    """Whether this call applied the step (else an earlier one did), and the ids of what it appended."""
-
-    applied: bool
-    ids: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Document:
-    """A compare-and-set value."""
-
-    data: bytes
-    revision: int
 
 
 class Store:
@@ -90,6 +38,7 @@ class Store:
         self._acquire = client.register_script(scripts.ACQUIRE)
         self._renew = client.register_script(scripts.RENEW)
         self._release = client.register_script(scripts.RELEASE)
+        self._append_once = client.register_script(scripts.APPEND_ONCE)
         self._commit = client.register_script(scripts.COMMIT)
         self._save = client.register_script(scripts.SAVE)
         self._take = client.register_script(scripts.TAKE)
@@ -138,13 +87,13 @@ class Store:
 
     async def scenes(self) -> list[str]:
         """All scenes, by name."""
-        async with _spoken():
+        async with spoken():
             return sorted(name.decode() for name in await self._client.smembers(keys.SCENES))
 
     async def add_scene(self, scene: str) -> None:
         """Makes a scene known; again changes nothing."""
         keys.check_name(scene, "scene")
-        async with _spoken():
+        async with spoken():
             await self._client.sadd(keys.SCENES, scene)
 
     async def ingest(
@@ -152,7 +101,7 @@ class Store:
     ) -> Ingested:
         """Appends a frame to the scene's `frames` log unless its session and sequence are already there."""
         words = [word for pair in fields.items() for word in pair]
-        async with _spoken():
+        async with spoken():
             entry, duplicate, length = await self._ingest(
                 keys=[keys.stream(scene, "frames"), keys.sequences(scene), keys.frame_ids(scene)],
                 args=[session, sequence, frame_id, scene, *words],
@@ -161,12 +110,12 @@ class Store:
 
     async def last_sequence(self, scene: str, session: str) -> int:
         """The last sequence of a session that is in the log; 0 for none."""
-        async with _spoken():
+        async with spoken():
             return int(await self._client.hget(keys.sequences(scene), session) or 0)
 
     async def frame_log_id(self, scene: str, frame_id: str) -> str | None:
         """The id of a frame's entry in the `frames` log."""
-        async with _spoken():
+        async with spoken():
             found = await self._client.hget(keys.frame_ids(scene), frame_id)
         return found.decode() if found else None
 
@@ -174,29 +123,69 @@ class Store:
         self, scene: str, stream: str, after: str = START, count: int = 100, block_ms: int | None = None
     ) -> list[Entry]:
         """Up to `count` entries of a log after id `after`; waits up to `block_ms` for the first, if given."""
-        async with _spoken():
-            reply = await self._client.xread({keys.stream(scene, stream): after}, count=count, block=block_ms)
-        return _entries(_rows(reply))
+        return (await self.read_any(scene, {stream: after}, count, block_ms))[stream]
+
+    async def read_any(
+        self, scene: str, after: Mapping[str, str], count: int = 100, block_ms: int | None = None
+    ) -> dict[str, list[Entry]]:
+        """Up to `count` entries of each log after its id; waits up to `block_ms` for the first of any, if given."""
+        logs = {keys.stream(scene, stream): stream for stream in after}
+        wanted = {log: after[stream] for log, stream in logs.items()}
+        async with spoken():
+            reply = await self._client.xread(wanted, count=count, block=block_ms)
+        found: dict[str, list[Entry]] = {stream: [] for stream in after}
+        for log, rows in logs_of(reply):
+            found[logs[log]] = entries_of(rows)
+        return found
+
+    async def between(self, scene: str, stream: str, after: str, last: str, count: int = 100) -> list[Entry]:
+        """Up to `count` entries of a log above id `after`, none above `last`."""
+        async with spoken():
+            found = await self._client.xrange(keys.stream(scene, stream), f"({after}", last, count)
+        return entries_of(found)
+
+    async def at_or_before(self, scene: str, stream: str, entry_id: str) -> Entry | None:
+        """The newest entry of a log that is not above an id."""
+        async with spoken():
+            found = await self._client.xrevrange(keys.stream(scene, stream), entry_id, "-", 1)
+        return entries_of(found)[0] if found else None
+
+    async def append_once(
+        self, scene: str, stream: str, key: str, fields: Mapping[str, bytes | str | int]
+    ) -> Appended:
+        """Appends an entry to a log, once a key: again, whatever the fields, changes nothing."""
+        words = [word for pair in fields.items() for word in pair]
+        async with spoken():
+            entry, duplicate = await self._append_once(
+                keys=[keys.stream(scene, stream), keys.once(scene, stream)], args=[key, *words]
+            )
+        return Appended(entry.decode(), bool(duplicate))
+
+    async def entry_of(self, scene: str, stream: str, key: str) -> Entry | None:
+        """The entry that `append_once` made for a key, or None."""
+        async with spoken():
+            found = await self._client.hget(keys.once(scene, stream), key)
+        return await self.read_entry(scene, stream, found.decode()) if found else None
 
     async def read_entry(self, scene: str, stream: str, entry_id: str) -> Entry | None:
         """One entry by its id."""
-        async with _spoken():
-            found = _entries(await self._client.xrange(keys.stream(scene, stream), entry_id, entry_id))
+        async with spoken():
+            found = entries_of(await self._client.xrange(keys.stream(scene, stream), entry_id, entry_id))
         return found[0] if found else None
 
     async def newest(self, scene: str, stream: str, count: int = 1) -> list[Entry]:
         """The newest entries of a log, newest first."""
-        async with _spoken():
-            return _entries(await self._client.xrevrange(keys.stream(scene, stream), count=count))
+        async with spoken():
+            return entries_of(await self._client.xrevrange(keys.stream(scene, stream), count=count))
 
     async def length(self, scene: str, stream: str) -> int:
         """Number of entries of a log."""
-        async with _spoken():
+        async with spoken():
             return int(await self._client.xlen(keys.stream(scene, stream)))
 
     async def acquire_lease(self, scene: str, stage: str, owner: str, ttl_s: float) -> Lease | None:
         """The lease where it is free or already this owner's; else None."""
-        async with _spoken():
+        async with spoken():
             fence = await self._acquire(
                 keys=[keys.lease(scene, stage), keys.fence(scene, stage)], args=[owner, int(ttl_s * 1000)]
             )
@@ -204,7 +193,7 @@ class Store:
 
     async def renew(self, lease: Lease) -> None:
         """Keeps the lease for another `ttl_s`; LeaseLost where another took it."""
-        async with _spoken():
+        async with spoken():
             kept = await self._renew(
                 keys=[keys.lease(lease.scene, lease.stage)],
                 args=[lease.owner, lease.fence, int(lease.ttl_s * 1000)],
@@ -214,61 +203,62 @@ class Store:
 
     async def release(self, lease: Lease) -> None:
         """Gives the lease back, so that another need not wait for it to expire."""
-        async with _spoken():
+        async with spoken():
             await self._release(keys=[keys.lease(lease.scene, lease.stage)], args=[lease.owner, lease.fence])
 
-    async def cursor(self, scene: str, stage: str) -> str:
-        """Id of the last input that a stage has committed."""
-        async with _spoken():
-            found = await self._client.hget(keys.state(scene, stage), "cursor")
-        return found.decode() if found else START
+    async def cursor(self, scene: str, stage: str, name: str = CURSOR) -> str:
+        """Id of the last input that a stage has committed; of one of its inputs, where it has several."""
+        return (await self.cursors(scene, stage, [name]))[name]
+
+    async def cursors(self, scene: str, stage: str, names: Sequence[str]) -> dict[str, str]:
+        """Several cursors of a stage as of one moment."""
+        async with spoken():
+            found = await self._client.hmget(keys.state(scene, stage), [cursor_field(name) for name in names])
+        return {name: at.decode() if at is not None else START for name, at in zip(names, found, strict=True)}
 
     async def commit(
         self,
         lease: Lease,
-        input_id: str,
+        inputs: str | Mapping[str, str],
         appends: Sequence[Append] = (),
         puts: Mapping[str, bytes | str | int] | None = None,
     ) -> Committed:
-        """One step of a stage, atomically and once: appends, small values and the cursor move together.
+        """One step of a stage, atomically and once: appends, small values and cursors move together.
 
-        Raises LeaseLost where another writer holds the stage. Idempotent: an input at or before the cursor
-        changes nothing.
+        inputs: the log id of the step's input, or one for each cursor, by its name. Raises LeaseLost where another
+        writer holds the stage, Conflict where some of the inputs are done and some are not. Idempotent: inputs at
+        or before their cursors change nothing.
         """
-        if not _LOG_ID.fullmatch(input_id):
-            raise InvalidInput(f"input_id: expected a log id like 1700000000000-0, got {input_id[:80]!r}")
-        puts = puts or {}
-        args: list[bytes | str | int] = [lease.owner, lease.fence, input_id, len(puts)]
-        for pair in puts.items():
-            args.extend(pair)
-        for append in appends:
-            args.append(2 * len(append.fields))
-            for field_pair in append.fields.items():
-                args.extend(field_pair)
-        async with _spoken():
+        inputs = {CURSOR: inputs} if isinstance(inputs, str) else inputs
+        for what, given in [*inputs.items(), *(("entry", a.entry_id) for a in appends if a.entry_id)]:
+            if not _LOG_ID.fullmatch(given):
+                raise InvalidInput(f"{what}: expected a log id like 1700000000000-0, got {given[:80]!r}")
+        async with spoken():
             reply = await self._commit(
                 keys=[
                     keys.lease(lease.scene, lease.stage),
                     keys.state(lease.scene, lease.stage),
                     *(keys.stream(lease.scene, append.stream) for append in appends),
                 ],
-                args=args,
+                args=[lease.owner, lease.fence, *words_of_step(inputs, puts or {}, appends)],
             )
         if reply[0] == -1:
             raise LeaseLost(f"{lease.stage} of scene {lease.scene} is now written by another process")
+        if reply[0] == -2:
+            raise Conflict(f"{lease.stage} of scene {lease.scene}: the step was made on an older state")
         return Committed(bool(reply[0]), tuple(item.decode() for item in reply[1:]))
 
     async def values(self, scene: str, stage: str, names: Sequence[str]) -> dict[str, bytes]:
         """What a stage's steps put under `names`; absent names are left out."""
         if not names:
             return {}
-        async with _spoken():
+        async with spoken():
             found = await self._client.hmget(keys.state(scene, stage), [f"v:{name}" for name in names])
         return {name: value for name, value in zip(names, found, strict=True) if value is not None}
 
     async def load_document(self, scene: str, kind: str, name: str) -> Document | None:
         """A document with its revision, or None."""
-        async with _spoken():
+        async with spoken():
             revision, data = await self._client.hmget(keys.documents(scene, kind), [f"r:{name}", f"b:{name}"])
         return Document(data, int(revision)) if data is not None else None
 
@@ -276,7 +266,7 @@ class Store:
         self, scene: str, kind: str, name: str, data: bytes, expected_revision: int
     ) -> int:
         """Writes a document made on `expected_revision` (0: new); Conflict where it has moved on since."""
-        async with _spoken():
+        async with spoken():
             revision = await self._save(
                 keys=[keys.documents(scene, kind)], args=[name, expected_revision, data]
             )
@@ -288,7 +278,7 @@ class Store:
 
     async def list_documents(self, scene: str, kind: str) -> list[str]:
         """Names of a scene's documents of one kind, sorted."""
-        async with _spoken():
+        async with spoken():
             found = await self._client.hkeys(keys.documents(scene, kind))
         return sorted(name.decode()[2:] for name in found if name.startswith(b"r:"))
 
@@ -298,29 +288,29 @@ class Store:
             raise InvalidInput(
                 f"bucket {bucket}: {amount:g} can never be taken from a capacity of {capacity:g}"
             )
-        async with _spoken():
+        async with spoken():
             return float(await self._take(keys=[keys.bucket(bucket)], args=[capacity, refill_per_s, amount]))
 
     async def counter_add(self, name: str, amount: float) -> None:
         """Adds to a statistic (not exactly-once)."""
-        async with _spoken():
+        async with spoken():
             await self._client.incrbyfloat(keys.counter(name), amount)
 
     async def counters(self, names: Sequence[str]) -> dict[str, float]:
         """Statistics by name; 0 where never counted."""
-        async with _spoken():
+        async with spoken():
             found = [await self._client.get(keys.counter(name)) for name in names]
         return {name: float(value or 0) for name, value in zip(names, found, strict=True)}
 
     async def cache_get(self, key: str) -> bytes | None:
         """A cached reply, or None."""
-        async with _spoken():
+        async with spoken():
             found: bytes | None = await self._client.get(keys.cache(key))
         return found
 
     async def cache_put(self, key: str, data: bytes, ttl_s: float) -> None:
         """Caches a reply for a while."""
-        async with _spoken():
+        async with spoken():
             await self._client.set(keys.cache(key), data, px=int(ttl_s * 1000))
 
     async def _wait_until_loaded(self) -> None:
@@ -333,43 +323,3 @@ class Store:
             except RedisError as error:
                 raise Unavailable(f"the store cannot be reached: {error}") from error
         raise Unavailable("the store is still loading its log after a minute")
-
-
-@contextlib.asynccontextmanager
-async def _spoken() -> AsyncIterator[None]:
-    """Turns the client library's errors into ours, and never lets it swallow a cancellation (its wait_for can).
-
-    Only one that came meanwhile: what a cancelled task says on its way out still goes through.
-    """
-    task = asyncio.current_task()
-    cancelled_before = task.cancelling() if task else 0
-    try:
-        yield
-        if task and task.cancelling() > cancelled_before:
-            raise asyncio.CancelledError
-    except (RedisConnectionError, RedisTimeoutError) as error:
-        raise Unavailable(f"the store cannot be reached: {error}") from error
-    except RedisError as error:
-        raise Unavailable(f"the store refused: {error}") from error
-
-
-def _rows(reply: Any) -> list[Any]:
-    """Rows of a one-stream XREAD reply, in the RESP2 (list) or RESP3 (dict) form."""
-    if not reply:
-        return []
-    if isinstance(reply, dict):
-        (chunks,) = reply.values()
-        return (
-            [row for chunk in chunks for row in chunk]
-            if chunks and isinstance(chunks[0], list)
-            else list(chunks)
-        )
-    return list(reply[0][1])
-
-
-def _entries(rows: list[Any]) -> list[Entry]:
-    return [
-        Entry(entry.decode(), {name.decode(): value for name, value in fields.items()})
-        for entry, fields in rows
-        if fields is not None
-    ]

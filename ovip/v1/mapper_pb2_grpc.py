@@ -26,7 +26,7 @@ if _version_not_supported:
 
 
 class MapperServiceStub(object):
-    """Mapper owns the objects of a scene.
+    """The object map of each scene.
     """
 
     def __init__(self, channel):
@@ -40,7 +40,7 @@ class MapperServiceStub(object):
                 request_serializer=ovip_dot_v1_dot_mapper__pb2.ListScenesRequest.SerializeToString,
                 response_deserializer=ovip_dot_v1_dot_mapper__pb2.ListScenesResponse.FromString,
                 _registered_method=True)
-        self.GetMap = channel.unary_unary(
+        self.GetMap = channel.unary_stream(
                 '/ovip.v1.MapperService/GetMap',
                 request_serializer=ovip_dot_v1_dot_mapper__pb2.GetMapRequest.SerializeToString,
                 response_deserializer=ovip_dot_v1_dot_mapper__pb2.GetMapResponse.FromString,
@@ -50,7 +50,7 @@ class MapperServiceStub(object):
                 request_serializer=ovip_dot_v1_dot_mapper__pb2.GetObjectRequest.SerializeToString,
                 response_deserializer=ovip_dot_v1_dot_mapper__pb2.GetObjectResponse.FromString,
                 _registered_method=True)
-        self.GetObjectPoints = channel.unary_unary(
+        self.GetObjectPoints = channel.unary_stream(
                 '/ovip.v1.MapperService/GetObjectPoints',
                 request_serializer=ovip_dot_v1_dot_mapper__pb2.GetObjectPointsRequest.SerializeToString,
                 response_deserializer=ovip_dot_v1_dot_mapper__pb2.GetObjectPointsResponse.FromString,
@@ -60,20 +60,47 @@ class MapperServiceStub(object):
                 request_serializer=ovip_dot_v1_dot_mapper__pb2.WatchMapRequest.SerializeToString,
                 response_deserializer=ovip_dot_v1_dot_mapper__pb2.WatchMapResponse.FromString,
                 _registered_method=True)
+        self.DiffMap = channel.unary_unary(
+                '/ovip.v1.MapperService/DiffMap',
+                request_serializer=ovip_dot_v1_dot_mapper__pb2.DiffMapRequest.SerializeToString,
+                response_deserializer=ovip_dot_v1_dot_mapper__pb2.DiffMapResponse.FromString,
+                _registered_method=True)
+        self.VerifyMap = channel.unary_unary(
+                '/ovip.v1.MapperService/VerifyMap',
+                request_serializer=ovip_dot_v1_dot_mapper__pb2.VerifyMapRequest.SerializeToString,
+                response_deserializer=ovip_dot_v1_dot_mapper__pb2.VerifyMapResponse.FromString,
+                _registered_method=True)
+        self.EditMap = channel.unary_unary(
+                '/ovip.v1.MapperService/EditMap',
+                request_serializer=ovip_dot_v1_dot_mapper__pb2.EditMapRequest.SerializeToString,
+                response_deserializer=ovip_dot_v1_dot_mapper__pb2.EditMapResponse.FromString,
+                _registered_method=True)
+        self.JoinMap = channel.unary_unary(
+                '/ovip.v1.MapperService/JoinMap',
+                request_serializer=ovip_dot_v1_dot_mapper__pb2.JoinMapRequest.SerializeToString,
+                response_deserializer=ovip_dot_v1_dot_mapper__pb2.JoinMapResponse.FromString,
+                _registered_method=True)
+        self.AlignMap = channel.unary_unary(
+                '/ovip.v1.MapperService/AlignMap',
+                request_serializer=ovip_dot_v1_dot_mapper__pb2.AlignMapRequest.SerializeToString,
+                response_deserializer=ovip_dot_v1_dot_mapper__pb2.AlignMapResponse.FromString,
+                _registered_method=True)
 
 
 class MapperServiceServicer(object):
-    """Mapper owns the objects of a scene.
+    """The object map of each scene.
     """
 
     def ListScenes(self, request, context):
-        """Missing associated documentation comment in .proto file."""
+        """All scenes this stack knows.
+        """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
     def GetMap(self, request, context):
-        """The map as it stands, confirmed objects only unless asked.
+        """The map as it stands, or stood at a version; confirmed objects that are present only, unless asked.
+        Parts of one map: each carries the header, objects follow on in order of birth.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
@@ -86,14 +113,49 @@ class MapperServiceServicer(object):
         raise NotImplementedError('Method not implemented!')
 
     def GetObjectPoints(self, request, context):
-        """Points of objects, for drawing and export.
+        """Points of objects, for drawing and export, in parts.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
     def WatchMap(self, request, context):
-        """The map log: one delta a commit, from a version on, then live.
+        """The map log: one delta a version, from a version on, then live.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def DiffMap(self, request, context):
+        """What differs between two versions of a map.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def VerifyMap(self, request, context):
+        """Rebuilds the map from its log and compares hashes.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def EditMap(self, request, context):
+        """An operator's edit. ABORTED where what it edits has changed since; the same edit_id again changes nothing.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def JoinMap(self, request, context):
+        """Brings all objects of another scene's map into this one by a known transform.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def AlignMap(self, request, context):
+        """The transform between two scenes that recorded one place, by ICP; FAILED_PRECONDITION where it is poor.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
@@ -107,7 +169,7 @@ def add_MapperServiceServicer_to_server(servicer, server):
                     request_deserializer=ovip_dot_v1_dot_mapper__pb2.ListScenesRequest.FromString,
                     response_serializer=ovip_dot_v1_dot_mapper__pb2.ListScenesResponse.SerializeToString,
             ),
-            'GetMap': grpc.unary_unary_rpc_method_handler(
+            'GetMap': grpc.unary_stream_rpc_method_handler(
                     servicer.GetMap,
                     request_deserializer=ovip_dot_v1_dot_mapper__pb2.GetMapRequest.FromString,
                     response_serializer=ovip_dot_v1_dot_mapper__pb2.GetMapResponse.SerializeToString,
@@ -117,7 +179,7 @@ def add_MapperServiceServicer_to_server(servicer, server):
                     request_deserializer=ovip_dot_v1_dot_mapper__pb2.GetObjectRequest.FromString,
                     response_serializer=ovip_dot_v1_dot_mapper__pb2.GetObjectResponse.SerializeToString,
             ),
-            'GetObjectPoints': grpc.unary_unary_rpc_method_handler(
+            'GetObjectPoints': grpc.unary_stream_rpc_method_handler(
                     servicer.GetObjectPoints,
                     request_deserializer=ovip_dot_v1_dot_mapper__pb2.GetObjectPointsRequest.FromString,
                     response_serializer=ovip_dot_v1_dot_mapper__pb2.GetObjectPointsResponse.SerializeToString,
@@ -126,6 +188,31 @@ def add_MapperServiceServicer_to_server(servicer, server):
                     servicer.WatchMap,
                     request_deserializer=ovip_dot_v1_dot_mapper__pb2.WatchMapRequest.FromString,
                     response_serializer=ovip_dot_v1_dot_mapper__pb2.WatchMapResponse.SerializeToString,
+            ),
+            'DiffMap': grpc.unary_unary_rpc_method_handler(
+                    servicer.DiffMap,
+                    request_deserializer=ovip_dot_v1_dot_mapper__pb2.DiffMapRequest.FromString,
+                    response_serializer=ovip_dot_v1_dot_mapper__pb2.DiffMapResponse.SerializeToString,
+            ),
+            'VerifyMap': grpc.unary_unary_rpc_method_handler(
+                    servicer.VerifyMap,
+                    request_deserializer=ovip_dot_v1_dot_mapper__pb2.VerifyMapRequest.FromString,
+                    response_serializer=ovip_dot_v1_dot_mapper__pb2.VerifyMapResponse.SerializeToString,
+            ),
+            'EditMap': grpc.unary_unary_rpc_method_handler(
+                    servicer.EditMap,
+                    request_deserializer=ovip_dot_v1_dot_mapper__pb2.EditMapRequest.FromString,
+                    response_serializer=ovip_dot_v1_dot_mapper__pb2.EditMapResponse.SerializeToString,
+            ),
+            'JoinMap': grpc.unary_unary_rpc_method_handler(
+                    servicer.JoinMap,
+                    request_deserializer=ovip_dot_v1_dot_mapper__pb2.JoinMapRequest.FromString,
+                    response_serializer=ovip_dot_v1_dot_mapper__pb2.JoinMapResponse.SerializeToString,
+            ),
+            'AlignMap': grpc.unary_unary_rpc_method_handler(
+                    servicer.AlignMap,
+                    request_deserializer=ovip_dot_v1_dot_mapper__pb2.AlignMapRequest.FromString,
+                    response_serializer=ovip_dot_v1_dot_mapper__pb2.AlignMapResponse.SerializeToString,
             ),
     }
     generic_handler = grpc.method_handlers_generic_handler(
@@ -136,7 +223,7 @@ def add_MapperServiceServicer_to_server(servicer, server):
 
  # This class is part of an EXPERIMENTAL API.
 class MapperService(object):
-    """Mapper owns the objects of a scene.
+    """The object map of each scene.
     """
 
     @staticmethod
@@ -177,7 +264,7 @@ class MapperService(object):
             wait_for_ready=None,
             timeout=None,
             metadata=None):
-        return grpc.experimental.unary_unary(
+        return grpc.experimental.unary_stream(
             request,
             target,
             '/ovip.v1.MapperService/GetMap',
@@ -231,7 +318,7 @@ class MapperService(object):
             wait_for_ready=None,
             timeout=None,
             metadata=None):
-        return grpc.experimental.unary_unary(
+        return grpc.experimental.unary_stream(
             request,
             target,
             '/ovip.v1.MapperService/GetObjectPoints',
@@ -264,6 +351,141 @@ class MapperService(object):
             '/ovip.v1.MapperService/WatchMap',
             ovip_dot_v1_dot_mapper__pb2.WatchMapRequest.SerializeToString,
             ovip_dot_v1_dot_mapper__pb2.WatchMapResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def DiffMap(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/ovip.v1.MapperService/DiffMap',
+            ovip_dot_v1_dot_mapper__pb2.DiffMapRequest.SerializeToString,
+            ovip_dot_v1_dot_mapper__pb2.DiffMapResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def VerifyMap(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/ovip.v1.MapperService/VerifyMap',
+            ovip_dot_v1_dot_mapper__pb2.VerifyMapRequest.SerializeToString,
+            ovip_dot_v1_dot_mapper__pb2.VerifyMapResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def EditMap(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/ovip.v1.MapperService/EditMap',
+            ovip_dot_v1_dot_mapper__pb2.EditMapRequest.SerializeToString,
+            ovip_dot_v1_dot_mapper__pb2.EditMapResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def JoinMap(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/ovip.v1.MapperService/JoinMap',
+            ovip_dot_v1_dot_mapper__pb2.JoinMapRequest.SerializeToString,
+            ovip_dot_v1_dot_mapper__pb2.JoinMapResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def AlignMap(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/ovip.v1.MapperService/AlignMap',
+            ovip_dot_v1_dot_mapper__pb2.AlignMapRequest.SerializeToString,
+            ovip_dot_v1_dot_mapper__pb2.AlignMapResponse.FromString,
             options,
             channel_credentials,
             insecure,

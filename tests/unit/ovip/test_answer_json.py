@@ -22,7 +22,8 @@ from ovip.scene.answers import (
     TierStarted,
     Viewpoint,
 )
-from ovip.scene.types import F64, Box2, MapObject
+from ovip.scene.types import F64, Box2, MapObject, Move, Presence, Relation, RelationKind
+from tests.unit.ovip.map_objects import map_object
 
 Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0.5], [0, 0, 0, 1]])
 """Source (x, y, z) is world (x, -z, y + 0.5): y up, its origin half a metre above the world's."""
@@ -143,6 +144,25 @@ def test_an_object_lists_its_labels_most_frequent_first_and_leaves_its_feature_o
     assert list(body["label_counts"]) == ["mug", "bowl", "cup"]
     assert "feature" not in body
     assert (body["frame_id"], body["box2"]) == (None, None)
+
+
+def test_an_object_tells_how_it_stands_whether_it_is_there_and_where_it_was() -> None:
+    turned = np.array([[0.0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    obj = map_object(
+        "o000001",
+        presence=Presence.MOVED_OR_REMOVED,
+        pinned=True,
+        relations=(Relation(RelationKind.NEXT_TO, "o000002", {"gap": 0.12344}),),
+        moves=(Move(5, np.array([1.0, 2.0, 3.0])),),
+        revision=4,
+    )
+
+    body = object_to_json(obj, turned)
+
+    assert (body["presence"], body["pinned"], body["label_given"]) == ("moved_or_removed", True, False)
+    assert body["relations"] == [{"kind": "next_to", "object_id": "o000002", "evidence": {"gap": 0.1234}}]
+    assert body["moves"] == [{"timestamp_ns": 5, "position": [-2.0, 1.0, 3.0]}]
+    assert body["revision"] == 4
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])

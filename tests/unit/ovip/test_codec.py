@@ -16,7 +16,9 @@ from hypothesis.extra import numpy as hnp
 from ovip import codec
 from ovip.errors import Corrupt, InvalidInput
 from ovip.scene import answers as a
+from ovip.scene import edits as e
 from ovip.scene import types as t
+from ovip.scene import versions as v
 from ovip.scene.grid import FloorGrid
 from ovip.v1 import mapper_pb2, perception_pb2, regions_pb2, retrieval_pb2, types_pb2
 from tests.builders import axis, camera, detection, pose, same
@@ -42,12 +44,61 @@ MAP_OBJECT = t.MapObject(
     best_frame_id="r.s.00000003",
     best_box2=t.Box2(1.5, 2.5, 3.5, 4.5),
     version=9,
+    revision=5,
+    presence=t.Presence.MOVED_OR_REMOVED,
+    pinned=True,
+    label_given=True,
+    relations=tuple(
+        t.Relation(kind, f"o{i:06d}", {"gap": 0.125, "share": 0.5}) for i, kind in enumerate(t.RelationKind)
+    ),
+    moves=(t.Move(7, POINT), t.Move(2**62, -POINT)),
 )
-DETECTION = detection(detection_id="r.s.00000001/cup/0")
+DETECTION = replace(detection(detection_id="r.s.00000001/cup/0"), second_feature=axis(1, 5))
+NEAREST = (np.arange(12 * 16).reshape(12, 16) / np.float32(1000.0)).astype(np.float32)
 BATCH = t.DetectionBatch(
-    "r.s.00000001", 2**62, camera(), pose(1, 2, 3, 0.4, 0.1), (DETECTION,), DETECTION.points, ("cup",)
+    "r.s.00000001",
+    2**62,
+    camera(),
+    pose(1, 2, 3, 0.4, 0.1),
+    (DETECTION,),
+    DETECTION.points,
+    ("cup",),
+    nearest=NEAREST,
 )
-DELTA = t.MapDelta(4, "r.s.00000002", ("o2",), ("o1",), ("o3",), {"o5": "o1", "o4": "o1"})
+DELTA = t.MapDelta(
+    version=4,
+    frame_id="r.s.00000002",
+    kind=t.StepKind.UPKEEP,
+    created=("o2",),
+    updated=("o1", "o6", "o7", "o8"),
+    removed=("o3",),
+    aliases={"o5": "o1", "o4": "o1"},
+    departed=("o6",),
+    returned=("o7",),
+    moved=("o8",),
+)
+PLAIN_OBJECT = replace(MAP_OBJECT, feature=np.zeros(0, np.float32))
+DIFF = v.MapDiff(
+    3,
+    9,
+    (
+        v.ObjectChange("o000007", replace(PLAIN_OBJECT, label="mug"), PLAIN_OBJECT, ("label",)),
+        v.ObjectChange("o000008", None, PLAIN_OBJECT),
+        v.ObjectChange("o000009", PLAIN_OBJECT, None, (), "o000007"),
+    ),
+)
+VERIFICATION = v.Verification(9, "ab", "cd", 3, (4, 8), 12)
+ALIGNMENT = v.Alignment(pose(1, 2, 3, 0.4), 0.75, 0.0125)
+EDITS = {
+    "rename": e.Rename("o000007", "mug"),
+    "rename back": e.Rename("o000007", ""),
+    "merge": e.Merge("o000007", ("o000008", "o000009")),
+    "split": e.Split("o000007", BOX, "lid"),
+    "delete": e.Delete("o000007"),
+    "pin": e.Pin("o000007"),
+    "unpin": e.Pin("o000007", pinned=False),
+}
+REQUESTS = {name: e.EditRequest(f"e-{name}", 9, "ada", edit) for name, edit in EDITS.items()}
 REGION = t.Region(
     "r1", 1, "kitchen", "kitchen 2", 12.5, POINT, (RING, RING + 3), (RING * 0.1,), ("o1",), ("f1", "f2")
 )
@@ -98,9 +149,14 @@ ROUND_TRIPS: dict[str, tuple[Any, Callable[[Any], Any], Callable[[Any], Any]]] =
     "intrinsics": (camera(), codec.intrinsics_message, codec.intrinsics_value),
     "detection": (DETECTION, codec.detection_message, codec.detection_value),
     "object": (MAP_OBJECT, codec.object_message, codec.object_value),
-    "map": (t.SceneMap("k", 9, (MAP_OBJECT,), "ab", 3, 4, "17-0"), codec.map_message, codec.map_value),
-    "empty map": (t.SceneMap("k", 0, (), "", 0, 0, "0-0"), codec.map_message, codec.map_value),
     "delta": (DELTA, codec.delta_message, codec.delta_value),
+    "diff": (DIFF, codec.diff_message, codec.diff_value),
+    "verification": (VERIFICATION, codec.verification_message, codec.verification_value),
+    "alignment": (ALIGNMENT, codec.alignment_message, codec.alignment_value),
+    **{
+        name: (request, codec.edit_request_message, codec.edit_request_value)
+        for name, request in REQUESTS.items()
+    },
     "partition": (PARTITION, codec.partition_message, codec.partition_value),
     "empty partition": (t.Partition(0, 0), codec.partition_message, codec.partition_value),
     "floor grid": (GRID, codec.floor_grid_message, codec.floor_grid_value),
@@ -125,7 +181,13 @@ ROUND_TRIPS: dict[str, tuple[Any, Callable[[Any], Any], Callable[[Any], Any]]] =
 ENCODINGS: dict[str, tuple[Any, Callable[[Any], bytes], Callable[[bytes], Any]]] = {
     "detection batch": (BATCH, codec.encode_detection_batch, codec.decode_detection_batch),
     "late batch": (
-        replace(BATCH, late=True, surface=np.zeros((0, 3), np.float32), detections=()),
+        replace(
+            BATCH,
+            late=True,
+            surface=np.zeros((0, 3), np.float32),
+            detections=(),
+            nearest=np.zeros((0, 0), np.float32),
+        ),
         codec.encode_detection_batch,
         codec.decode_detection_batch,
     ),
@@ -133,6 +195,10 @@ ENCODINGS: dict[str, tuple[Any, Callable[[Any], bytes], Callable[[bytes], Any]]]
     "partition": (PARTITION, codec.encode_partition, codec.decode_partition),
     "floor grid": (GRID, codec.encode_floor_grid, codec.decode_floor_grid),
     "answer": (ANSWER, codec.encode_answer, codec.decode_answer),
+    **{
+        name: (request, codec.encode_edit_request, codec.decode_edit_request)
+        for name, request in REQUESTS.items()
+    },
 }
 
 
@@ -227,6 +293,23 @@ def test_an_answer_from_the_future_is_corrupt() -> None:
         codec.event_value(retrieval_pb2.FindEvent())
 
 
+def test_enum_members_from_the_future_are_corrupt_in_words() -> None:
+    relation = types_pb2.Relation(kind=99, other_id="o2")
+    with pytest.raises(Corrupt, match="object o1: presence 77 is not known"):
+        codec.object_value(types_pb2.MapObject(object_id="o1", presence=77))
+    for unknown in (relation, types_pb2.Relation(other_id="o2")):
+        with pytest.raises(Corrupt, match=r"object o1: relation (99|0) is not known"):
+            codec.object_value(types_pb2.MapObject(object_id="o1", relations=[unknown]))
+    with pytest.raises(Corrupt, match="map version 4: step kind 77 is not known"):
+        codec.delta_value(mapper_pb2.MapDelta(version=4, kind=77))
+
+
+def test_what_was_written_before_a_field_was_there_reads_as_what_it_meant() -> None:
+    assert codec.delta_value(mapper_pb2.MapDelta(version=4)).kind is t.StepKind.FRAME
+    assert codec.object_value(types_pb2.MapObject(object_id="o1")).presence is t.Presence.PRESENT
+    assert codec.detection_value(types_pb2.Detection(detection_id="d")).second_feature.size == 0
+
+
 def test_a_grid_whose_bytes_do_not_match_its_size_is_corrupt() -> None:
     message = codec.floor_grid_message(GRID)
     message.rows = 3
@@ -242,6 +325,17 @@ def test_every_field_of_the_values_travels() -> None:
         (DETECTION, types_pb2.Detection),
         (MAP_OBJECT, types_pb2.MapObject),
         (DELTA, mapper_pb2.MapDelta),
+        (MAP_OBJECT.relations[0], types_pb2.Relation),
+        (MAP_OBJECT.moves[0], types_pb2.Move),
+        (DIFF, mapper_pb2.DiffMapResponse),
+        (DIFF.changes[0], mapper_pb2.ObjectChange),
+        (VERIFICATION, mapper_pb2.VerifyMapResponse),
+        (ALIGNMENT, mapper_pb2.AlignMapResponse),
+        (EDITS["rename"], mapper_pb2.RenameEdit),
+        (EDITS["merge"], mapper_pb2.MergeEdit),
+        (EDITS["split"], mapper_pb2.SplitEdit),
+        (EDITS["delete"], mapper_pb2.DeleteEdit),
+        (EDITS["pin"], mapper_pb2.PinEdit),
         (REGION, regions_pb2.Region),
         (RECORD, perception_pb2.FrameRecord),
         (STATUS, perception_pb2.GetPerceptionStatusResponse),

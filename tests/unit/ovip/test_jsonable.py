@@ -52,7 +52,7 @@ def test_dataclasses_become_dicts_by_field() -> None:
         "vlm_calls": 0,
         "ms": 0.5,
     }
-    assert to_json(MapDelta(3, "f", ("a",)))["created"] == ["a"]
+    assert to_json(MapDelta(3, "f", created=("a",)))["created"] == ["a"]
 
 
 def test_a_nested_value_survives_json() -> None:

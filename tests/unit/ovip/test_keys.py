@@ -60,6 +60,7 @@ def test_every_key_is_listed_in_the_docstring() -> None:
 
     for kind in (
         "stream:",
+        "once:",
         "sequences",
         "frame-ids",
         "lease:",
@@ -77,6 +78,7 @@ def _keys_of(scene: str) -> list[str]:
     return [
         keys.stream(scene, "frames"),
         keys.stream(scene, "map"),
+        keys.once(scene, "frames"),
         keys.sequences(scene),
         keys.frame_ids(scene),
         keys.lease(scene, "mapper"),

@@ -17,9 +17,12 @@ from ovip.healthcheck import is_well
 from ovip.scene.types import MapDelta, SceneMap
 from ovip.serving import background, check_exposure, grpc_server
 from ovip.v1 import mapper_pb2, mapper_pb2_grpc
+from tests.builders import same
+from tests.unit.ovip.map_objects import map_object
 
 NAME = mapper_pb2.DESCRIPTOR.services_by_name["MapperService"].full_name
 EMPTY = SceneMap("kitchen", 3, (), "", 0, 0, "0-0")
+CUP = map_object("o000001", version=3)
 
 
 class Answering(mapper_pb2_grpc.MapperServiceServicer):
@@ -28,8 +31,14 @@ class Answering(mapper_pb2_grpc.MapperServiceServicer):
     def __init__(self, act: Callable[[], Any]) -> None:
         self._act = act
 
-    async def GetMap(self, request: Any, context: Any) -> Any:
-        return self._act() or codec.map_message(EMPTY)
+    async def GetObject(self, request: Any, context: Any) -> Any:
+        self._act()
+        return mapper_pb2.GetObjectResponse(object=codec.object_message(CUP), version=3)
+
+    async def GetMap(self, request: Any, context: Any) -> AsyncIterator[Any]:
+        self._act()
+        for part in codec.map_parts(EMPTY):
+            yield part
 
     async def WatchMap(self, request: Any, context: Any) -> AsyncIterator[Any]:
         yield mapper_pb2.WatchMapResponse(delta=codec.delta_message(MapDelta(1, "f")))
@@ -69,6 +78,7 @@ def _kinds(kind: type[OvipError] = OvipError) -> list[type[OvipError]]:
 
 async def test_a_call_is_answered() -> None:
     async with serving() as port, mapper_at(port) as mapper:
+        assert same(await mapper.get_object("kitchen", "o000001"), CUP)
         assert await mapper.get_map("kitchen") == EMPTY
 
 
@@ -76,9 +86,11 @@ async def test_a_call_is_answered() -> None:
 async def test_every_error_arrives_as_itself_with_its_words(kind: type[OvipError]) -> None:
     async with serving(_raise(kind("expected this, got that"))) as port, mapper_at(port) as mapper:
         with pytest.raises(OvipError, match=r"^expected this, got that$") as arrived:
+            await mapper.get_object("kitchen", "o000001")
+        with pytest.raises(OvipError, match=r"^expected this, got that$") as streamed:
             await mapper.get_map("kitchen")
 
-    assert type(arrived.value) is kind
+    assert type(arrived.value) is type(streamed.value) is kind
 
 
 async def test_an_error_ends_a_stream_after_what_was_sent_before() -> None:
@@ -95,16 +107,16 @@ async def test_a_crash_is_an_internal_error_that_tells_nothing_and_the_service_g
     acts = iter([_raise(KeyError("the password is hunter2")), lambda: None])
     async with serving(lambda: next(acts)()) as port, mapper_at(port) as mapper:
         with pytest.raises(OvipError, match="an internal error, logged by the service") as crashed:
-            await mapper.get_map("kitchen")
+            await mapper.get_object("kitchen", "o000001")
 
         assert "hunter2" not in str(crashed.value)
-        assert (await mapper.get_map("kitchen")).version == 3
+        assert (await mapper.get_object("kitchen", "o000001")).version == 3
 
 
 async def test_a_read_is_tried_again_while_the_service_is_away() -> None:
     acts = iter([_raise(Unavailable("starting")), _raise(Unavailable("starting")), lambda: None])
     async with serving(lambda: next(acts)()) as port, mapper_at(port) as mapper:
-        assert (await mapper.get_map("kitchen")).version == 3
+        assert (await mapper.get_object("kitchen", "o000001")).version == 3
 
 
 async def test_a_message_over_16_mb_is_too_large_in_words_and_the_service_goes_on() -> None:
@@ -112,15 +124,15 @@ async def test_a_message_over_16_mb_is_too_large_in_words_and_the_service_goes_o
         channel = grpc.aio.insecure_channel(f"127.0.0.1:{port}", [("grpc.enable_http_proxy", 0)])
         stub = mapper_pb2_grpc.MapperServiceStub(channel)
         with pytest.raises(grpc.aio.AioRpcError) as refused:
-            await stub.GetMap(mapper_pb2.GetMapRequest(scene="x" * 20_000_000))
+            await stub.GetObject(mapper_pb2.GetObjectRequest(scene="x" * 20_000_000))
         await channel.close()
 
         assert refused.value.code() is grpc.StatusCode.RESOURCE_EXHAUSTED
         assert "larger than max" in refused.value.details()
         async with mapper_at(port) as mapper:
             with pytest.raises(TooLarge, match="larger than max"):
-                await mapper.get_map("x" * 20_000_000)
-            assert (await mapper.get_map("kitchen")).version == 3
+                await mapper.get_object("x" * 20_000_000, "o000001")
+            assert (await mapper.get_object("kitchen", "o000001")).version == 3
 
 
 # The key
@@ -130,7 +142,7 @@ async def test_a_message_over_16_mb_is_too_large_in_words_and_the_service_goes_o
 async def test_without_the_key_every_call_is_refused_in_words(given: str | None) -> None:
     async with serving(key="key") as port, mapper_at(port, given) as mapper:
         with pytest.raises(NotAuthorized, match="authorization: Bearer KEY"):
-            await mapper.get_map("kitchen")
+            await mapper.get_object("kitchen", "o000001")
         with pytest.raises(NotAuthorized, match="authorization: Bearer KEY"):
             async for _ in mapper.watch("kitchen", 0):
                 pass
@@ -138,7 +150,7 @@ async def test_without_the_key_every_call_is_refused_in_words(given: str | None)
 
 async def test_with_the_key_calls_and_streams_are_answered() -> None:
     async with serving(key="key") as port, mapper_at(port, "key") as mapper:
-        assert (await mapper.get_map("kitchen")).version == 3
+        assert (await mapper.get_object("kitchen", "o000001")).version == 3
         assert [d.version async for d in mapper.watch("kitchen", 0)] == [1]
 
 

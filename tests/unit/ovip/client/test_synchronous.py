@@ -19,10 +19,11 @@ NAME = mapper_pb2.DESCRIPTOR.services_by_name["MapperService"].full_name
 
 
 class OneScene(mapper_pb2_grpc.MapperServiceServicer):
-    async def GetMap(self, request: Any, context: Any) -> Any:
+    async def GetMap(self, request: Any, context: Any) -> AsyncIterator[Any]:
         if request.scene != "kitchen":
             raise NotFound(f"there is no scene {request.scene!r}")
-        return codec.map_message(SceneMap("kitchen", 3, (), "", 0, 0, "0-0"))
+        for part in codec.map_parts(SceneMap("kitchen", 3, (), "", 0, 0, "0-0")):
+            yield part
 
 
 @pytest.fixture

@@ -34,14 +34,17 @@ def test_detections_come_back(tmp_path: Path, with_mask: bool, with_feature: boo
     mask = np.eye(5, dtype=bool) if with_mask else None
     feature = np.array([0.25, -1.5], np.float32) if with_feature else None
     path = tmp_path / "0.json"
-    write_onboard(path, [OnboardDetection("red mug", 0.5, Box2(1, 2, 3, 4.5), mask, feature)])
+    second = None if feature is None else feature[:1]
+    write_onboard(path, [OnboardDetection("red mug", 0.5, Box2(1, 2, 3, 4.5), mask, feature, second)])
     (got,) = read_onboard(path)
     assert (got.label, got.score, got.box2) == ("red mug", 0.5, Box2(1, 2, 3, 4.5))
     assert (got.mask is None, got.feature is None) == (not with_mask, not with_feature)
+    assert (got.second_feature is None) == (not with_feature)
     if mask is not None and got.mask is not None:
         np.testing.assert_array_equal(got.mask, mask)
     if feature is not None and got.feature is not None:
         np.testing.assert_array_equal(got.feature, feature)
+        np.testing.assert_array_equal(got.second_feature, second)
 
 
 @pytest.mark.parametrize(
@@ -56,6 +59,10 @@ def test_detections_come_back(tmp_path: Path, with_mask: bool, with_feature: boo
             "expected runs over 2x2 pixels, got 3 pixels",
         ),
         ({"label": "mug", "score": 1, "box": [0, 0, 1, 1], "feature": ["a"]}, "expected 'feature'"),
+        (
+            {"label": "mug", "score": 1, "box": [0, 0, 1, 1], "second_feature": []},
+            "expected 'second_feature'",
+        ),
     ],
 )
 def test_wrong_detections_say_what_was_expected(tmp_path: Path, item: object, message: str) -> None:

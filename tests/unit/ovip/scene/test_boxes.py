@@ -10,10 +10,11 @@ from hypothesis.extra import numpy as hnp
 
 from ovip.scene.boxes import (
     box_of,
-    pairwise_giou,
-    pairwise_intersection,
+    pair_giou,
+    pair_intersection,
+    pair_touching,
     pairwise_iou,
-    touching,
+    pairwise_touching,
     transformed_bounds,
     volume,
 )
@@ -46,7 +47,7 @@ def test_a_box_turned_inside_out_has_no_volume() -> None:
 
 def test_intersection_by_hand() -> None:
     """[1, 2] x [0, 2] x [0, 2] is shared: 4."""
-    assert pairwise_intersection(CUBE[None], np.stack([SHIFTED, FAR, CUBE])).tolist() == [[4.0, 0.0, 8.0]]
+    assert pair_intersection(CUBE, np.stack([SHIFTED, FAR, CUBE])).tolist() == [4.0, 0.0, 8.0]
 
 
 def test_iou_by_hand() -> None:
@@ -73,7 +74,7 @@ def test_no_boxes_make_an_empty_matrix() -> None:
 
     assert pairwise_iou(none, CUBE[None]).shape == (0, 1)
     assert pairwise_iou(CUBE[None], none).shape == (1, 0)
-    assert touching(CUBE, none).shape == (0,)
+    assert pairwise_touching(CUBE[None], none).shape == (1, 0)
 
 
 @given(box_lists(), box_lists())
@@ -96,13 +97,13 @@ def test_iou_of_a_box_with_itself_is_one_where_it_has_volume(boxes: F64) -> None
 @given(box_lists(least=1), box_lists())
 def test_boxes_share_a_volume_only_where_they_touch(a: F64, b: F64) -> None:
     """The mapper scores touching boxes only, so none with a positive IoU may be missed."""
-    shared = pairwise_intersection(a[:1], b)[0]
+    shared = pair_intersection(a[:, None], b[None])
 
-    assert (touching(a[0], b) | (shared == 0)).all()
+    assert (pairwise_touching(a, b) | (shared == 0)).all()
 
 
 def test_boxes_that_share_only_a_face_do_not_touch() -> None:
-    assert touching(CUBE, np.array([[2.0, 0, 0, 3, 2, 2]])).tolist() == [False]
+    assert not pair_touching(CUBE, np.array([2.0, 0, 0, 3, 2, 2]))
 
 
 def test_box_of_points_is_tight() -> None:
@@ -136,13 +137,13 @@ def test_giou_by_hand() -> None:
     """Shifted by half: IoU 4/12, the hull holds 3*2*2 = 12 = the union. Far: union 9, hull 6^3 = 216."""
     boxes = np.stack([CUBE, SHIFTED, FAR])
 
-    assert pairwise_giou(CUBE[None], boxes)[0] == pytest.approx([1.0, 4 / 12, -(216 - 9) / 216])
+    assert pair_giou(CUBE, boxes) == pytest.approx([1.0, 4 / 12, -(216 - 9) / 216])
 
 
 @given(box_lists(), box_lists())
 def test_giou_is_symmetric_and_never_above_iou(a: F64, b: F64) -> None:
-    giou = pairwise_giou(a, b)
+    giou = pair_giou(a[:, None], b[None])
 
     assert giou.shape == (len(a), len(b))
     assert (giou <= pairwise_iou(a, b)).all()
-    np.testing.assert_allclose(giou, pairwise_giou(b, a).T, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(giou, pair_giou(b[:, None], a[None]).T, rtol=1e-9, atol=1e-12)
