@@ -17,7 +17,7 @@ from services.perception.config import Settings
 from services.perception.detecting import Detecting
 from services.perception.domain.gate import DEFAULT_BLACKLIST, GateParams
 from services.perception.domain.lifting import LiftParams
-from services.perception.history import STAGE
+from services.perception.history import STAGE, FrameHistory
 from services.perception.server import PerceptionServicer
 from services.perception.service import Perception
 from services.perception.worker import PerceptionWorker
@@ -31,8 +31,10 @@ async def serve(settings: Settings, store: Store) -> AsyncIterator[int]:
     lift = LiftParams(min_confidence=settings.min_confidence, max_depth=settings.max_depth)
     detecting = Detecting(models, lift)
     extra = frozenset(filter(None, map(normalize_word, settings.gate_blacklist.split(","))))
-    worker = PerceptionWorker(store, detecting, GateParams(settings.gate_n_min, DEFAULT_BLACKLIST | extra))
-    servicer = PerceptionServicer(Perception(store, detecting, settings))
+    gate = GateParams(settings.gate_n_min, DEFAULT_BLACKLIST | extra)
+    history = FrameHistory(store)
+    worker = PerceptionWorker(store, detecting, gate, history)
+    servicer = PerceptionServicer(Perception(store, detecting, settings, history))
     name = perception_pb2.DESCRIPTOR.services_by_name["PerceptionService"].full_name
     async with (
         background("perception worker", lambda: follow_scenes(store, STAGE, worker.follow)),

@@ -47,7 +47,11 @@ class Settings(KernelSettings):
     full_encoder: str = Field(
         "laion/CLIP-ViT-H-14-laion2B-s32B-b79K", description="hub name or directory, for models=full"
     )
-    full_device: str = Field("cuda", description="torch device, for models=full")
+    second_encoder: str = Field(
+        "",
+        description="hub name or directory of a DINO whose features may veto merges, beside any models; empty: none",
+    )
+    full_device: str = Field("cuda", description="torch device, for models=full and the second encoder")
 
     @property
     def port(self) -> int:

@@ -10,29 +10,37 @@ import numpy as np
 
 from ovip.scene.types import F32, Bools, Detection, DetectionBatch, Frame
 from services.perception.domain.boxes2d import ScoredBox
-from services.perception.domain.lifting import LiftParams, lift, surface_cloud
-from services.perception.onboard import OnboardDetection, feature_of, mask_of
-from services.perception.ports import Encoder, Enumerator, Grounder, Segmenter
+from services.perception.domain.lifting import LiftParams, lift_all, surface_cloud
+from services.perception.domain.nearest import nearest_depth
+from services.perception.onboard import OnboardDetection, feature_of, mask_of, second_feature_of
+from services.perception.ports import CropEncoder, Encoder, Enumerator, Grounder, Segmenter
+
+_NONE = np.zeros(0, np.float32)
 
 
 @dataclass(frozen=True, slots=True)
 class Models:
-    """The models behind the four seams, and what the set is called."""
+    """The models behind the four seams, and what the set is called.
+
+    second_encoder: gives the features that may only veto merges (DINO family), where there is one.
+    """
 
     name: str
     enumerator: Enumerator
     grounder: Grounder
     segmenter: Segmenter
     encoder: Encoder
+    second_encoder: CropEncoder | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class _Look:
-    """What is known of one box before lifting."""
+    """What is known of one box before lifting. second: `(E,)` of the second encoder, empty where none looked."""
 
     box: ScoredBox
     mask: Bools
     feature: F32
+    second: F32
 
 
 class Detecting:
@@ -61,11 +69,11 @@ class Detecting:
     async def batch(
         self, frame: Frame, words: Sequence[str], onboard: Sequence[OnboardDetection] | None, late: bool
     ) -> DetectionBatch:
-        """What goes to the mapper for a frame; late batches carry no surface, theirs was sent before."""
+        """What goes to the mapper for a frame; late batches carry no surface and no depth, theirs was sent before."""
         detections = await self.detect(frame, words, onboard)
-        surface = np.zeros((0, 3), np.float32)
+        surface, nearest = np.zeros((0, 3), np.float32), np.zeros((0, 0), np.float32)
         if not late:
-            surface = await asyncio.to_thread(surface_cloud, frame, self._params)
+            surface, nearest = await asyncio.to_thread(self._seen, frame)
         return DetectionBatch(
             frame_id=frame.frame_id,
             timestamp_ns=frame.timestamp_ns,
@@ -75,6 +83,7 @@ class Detecting:
             surface=surface,
             words=tuple(words),
             late=late,
+            nearest=nearest,
         )
 
     async def _look(self, frame: Frame, words: Sequence[str]) -> list[_Look]:
@@ -84,7 +93,8 @@ class Detecting:
             return []
         masks = await self.models.segmenter.segment(frame, [box.box for box in boxes])
         features = await self.models.encoder.embed_crops(frame, boxes)
-        return [_Look(box, mask, feature) for box, mask, feature in zip(boxes, masks, features, strict=True)]
+        seconds = await self._seconds(frame, boxes)
+        return [_Look(*look) for look in zip(boxes, masks, features, seconds, strict=True)]
 
     async def _look_onboard(self, frame: Frame, detections: Sequence[OnboardDetection]) -> list[_Look]:
         kept = [d for d in detections if d.score >= self._params.min_confidence]
@@ -99,19 +109,34 @@ class Detecting:
         if any(feature is None for feature in features):
             made_features = await self.models.encoder.embed_crops(frame, boxes)
             features = [f if f is not None else made for f, made in zip(features, made_features, strict=True)]
+        seconds = [second_feature_of(d) for d in kept]
+        if any(second is None for second in seconds):
+            made_seconds = await self._seconds(frame, boxes)
+            seconds = [s if s is not None else made for s, made in zip(seconds, made_seconds, strict=True)]
         return [
-            _Look(box, mask, feature)
-            for box, mask, feature in zip(boxes, masks, features, strict=True)
-            if mask is not None and feature is not None
+            _Look(box, mask, feature, second)
+            for box, mask, feature, second in zip(boxes, masks, features, seconds, strict=True)
+            if mask is not None and feature is not None and second is not None
         ]
+
+    async def _seconds(self, frame: Frame, boxes: Sequence[ScoredBox]) -> Sequence[F32]:
+        """The second encoder's features, empty ones where there is none."""
+        if self.models.second_encoder is None:
+            return [_NONE] * len(boxes)
+        return list(await self.models.second_encoder.embed_crops(frame, boxes))
+
+    def _seen(self, frame: Frame) -> tuple[F32, F32]:
+        """A frame's coarse surface, and how far it saw."""
+        nearest = nearest_depth(frame.depth, farthest=self._params.farthest_seen)
+        return surface_cloud(frame, self._params), nearest
 
     def _lift_all(
         self, frame: Frame, looks: Sequence[_Look], words: tuple[str, ...]
     ) -> tuple[Detection, ...]:
         group = "+".join(words)
         detections = []
-        for index, look in enumerate(looks):
-            lifted = lift(frame, look.mask, self._params)
+        made = lift_all(frame, [look.mask for look in looks], self._params)
+        for index, (look, lifted) in enumerate(zip(looks, made, strict=True)):
             if lifted is None:
                 continue
             detections.append(
@@ -124,6 +149,7 @@ class Detecting:
                     feature=look.feature,
                     points=lifted.points,
                     colors=lifted.colors,
+                    second_feature=look.second,
                 )
             )
         return tuple(detections)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,13 +30,14 @@ class OnboardMask:
 
 @dataclass(frozen=True, slots=True)
 class OnboardDetection:
-    """One thing a robot saw; mask and feature are optional."""
+    """One thing a robot saw; mask, feature and second feature (of a DINO, which may only veto merges) are optional."""
 
     label: str
     score: float
     box: Box2
     mask: OnboardMask | None = None
     feature: tuple[float, ...] = ()
+    second_feature: tuple[float, ...] = ()
 
     @property
     def scored_box(self) -> ScoredBox:
@@ -43,12 +45,17 @@ class OnboardDetection:
 
 
 def check_onboard(
-    detections: Sequence[OnboardDetection], k: Intrinsics, dimension: int
+    detections: Sequence[OnboardDetection], k: Intrinsics, dimension: int, second_dimension: int = 0
 ) -> tuple[OnboardDetection, ...]:
-    """The detections with normalised labels; InvalidInput saying which one is wrong and how. dimension: features' D."""
+    """The detections with normalised labels; InvalidInput saying which one is wrong and how.
+
+    dimension: features' D. second_dimension: E of second features; 0 where the stack has no second encoder, and then
+    those of a frame must only be of one size.
+    """
     if len(detections) > MOST_DETECTIONS:
         raise InvalidInput(f"detections: expected at most {MOST_DETECTIONS} a frame, got {len(detections)}")
-    return tuple(_checked(i, d, k, dimension) for i, d in enumerate(detections))
+    second = second_dimension or next((len(d.second_feature) for d in detections if d.second_feature), 0)
+    return tuple(_checked(i, d, k, dimension, second) for i, d in enumerate(detections))
 
 
 def encode_onboard(detections: Sequence[OnboardDetection]) -> bytes:
@@ -60,11 +67,15 @@ def encode_onboard(detections: Sequence[OnboardDetection]) -> bytes:
             "box": [d.box.x0, d.box.y0, d.box.x1, d.box.y1],
             "mask": [d.mask.x, d.mask.y, len(d.mask.png)] if d.mask else None,
             "dimension": len(d.feature),
+            "second_dimension": len(d.second_feature),
         }
         for d in detections
     ]
     text = json.dumps(head).encode()
-    bodies = [(d.mask.png if d.mask else b"") + np.asarray(d.feature, "<f4").tobytes() for d in detections]
+    bodies = [
+        (d.mask.png if d.mask else b"") + np.asarray([*d.feature, *d.second_feature], "<f4").tobytes()
+        for d in detections
+    ]
     return b"".join([len(text).to_bytes(8, "little"), text, *bodies])
 
 
@@ -77,10 +88,18 @@ def decode_onboard(data: bytes) -> tuple[OnboardDetection, ...]:
         if item["mask"]:
             x, y, size = item["mask"]
             mask, at = OnboardMask(x, y, data[at : at + size]), at + size
-        feature = np.frombuffer(data, "<f4", count=item["dimension"], offset=at)
-        at += feature.nbytes
+        first, second = item["dimension"], item.get("second_dimension", 0)  # once there was one feature only
+        numbers = np.frombuffer(data, "<f4", count=first + second, offset=at)
+        at += numbers.nbytes
         detections.append(
-            OnboardDetection(item["label"], item["score"], Box2(*item["box"]), mask, tuple(feature.tolist()))
+            OnboardDetection(
+                label=item["label"],
+                score=item["score"],
+                box=Box2(*item["box"]),
+                mask=mask,
+                feature=tuple(numbers[:first].tolist()),
+                second_feature=tuple(numbers[first:].tolist()),
+            )
         )
     return tuple(detections)
 
@@ -106,7 +125,14 @@ def feature_of(detection: OnboardDetection) -> F32 | None:
     return normalize(np.array(detection.feature, np.float32)) if detection.feature else None
 
 
-def _checked(i: int, d: OnboardDetection, k: Intrinsics, dimension: int) -> OnboardDetection:
+def second_feature_of(detection: OnboardDetection) -> F32 | None:
+    """The unit second feature `(E,)`, or None where the robot sent none."""
+    return normalize(np.array(detection.second_feature, np.float32)) if detection.second_feature else None
+
+
+def _checked(
+    i: int, d: OnboardDetection, k: Intrinsics, dimension: int, second_dimension: int
+) -> OnboardDetection:
     what, word = f"detection {i}", normalize_word(d.label)
     if not word or len(d.label) > 100:
         raise InvalidInput(f"{what}: expected a label of 1 to 100 characters, got {d.label[:100]!r}")
@@ -119,12 +145,22 @@ def _checked(i: int, d: OnboardDetection, k: Intrinsics, dimension: int) -> Onbo
         raise InvalidInput(
             f"{what} ({d.label}): its box {numbers} lies outside the image of {k.width}x{k.height}"
         )
-    if d.feature and (len(d.feature) != dimension or not np.isfinite(d.feature).all() or not any(d.feature)):
+    if not _may_be(d.feature, dimension):
         raise InvalidInput(
             f"{what} ({d.label}): expected no feature, or {dimension} finite numbers of the scene's feature space, "
             f"got {len(d.feature)}"
         )
+    if not _may_be(d.second_feature, second_dimension):
+        raise InvalidInput(
+            f"{what} ({d.label}): expected no second feature, or {second_dimension} finite numbers of the second "
+            f"encoder's space, got {len(d.second_feature)}"
+        )
     mask_of(d, k)
     # a view weighs by its box's area in the image, so what lies beyond must not count
     box = Box2(max(d.box.x0, 0.0), max(d.box.y0, 0.0), min(d.box.x1, k.width), min(d.box.y1, k.height))
-    return OnboardDetection(word, d.score, box, d.mask, d.feature)
+    return dataclasses.replace(d, label=word, box=box)
+
+
+def _may_be(feature: Sequence[float], dimension: int) -> bool:
+    """Whether it is absent, or a vector of `dimension` with a direction."""
+    return not feature or (len(feature) == dimension and bool(np.isfinite(feature).all()) and any(feature))

@@ -37,8 +37,8 @@ class Segmenter(Protocol):
         ...
 
 
-class Encoder(Protocol):
-    """Puts crops and texts into one feature space."""
+class CropEncoder(Protocol):
+    """Puts crops into a feature space."""
 
     @property
     def space(self) -> str:
@@ -53,6 +53,10 @@ class Encoder(Protocol):
     async def embed_crops(self, frame: Frame, boxes: Sequence[ScoredBox]) -> F32:
         """Unit features `(N, D)` of the boxes' crops."""
         ...
+
+
+class Encoder(CropEncoder, Protocol):
+    """Puts crops and texts into one feature space."""
 
     async def embed_texts(self, texts: Sequence[str]) -> F32:
         """Unit features `(N, D)` of texts."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from collections.abc import AsyncIterator
 from typing import Any
 
@@ -18,6 +19,7 @@ from services.perception.onboard import OnboardDetection, OnboardMask
 from services.perception.service import Perception, Session
 
 _Outbox = asyncio.Queue[pb.StreamFramesResponse | None]
+_TAKEN_AT_ONCE = 4  # frames of one stream
 _HELLO_FIRST = "stream: expected a hello first (scene, robot_id, session_id, intrinsics), then frames"
 
 
@@ -95,19 +97,26 @@ class PerceptionServicer(perception_pb2_grpc.PerceptionServiceServicer):
         announcer: asyncio.Task[None] | None = None
         try:
             session: Session | None = None
-            async for request in requests:
-                kind = request.WhichOneof("message")
-                if session is None:
-                    session, welcome = await self._greet(request)
-                    since = await self._perception.newest_map_entry(session.scene)
-                    outbox.put_nowait(welcome)
-                    announcer = asyncio.create_task(self._announce_applied(session, since, outbox))
-                elif kind == "frame":
-                    await self._take_in(session, request.frame, outbox)
-                else:
-                    raise InvalidInput(
-                        f"stream: expected frames after the hello, got {kind or 'an empty message'}"
-                    )
+            async with _raising_alone(), asyncio.TaskGroup() as taking:
+                taken: list[asyncio.Task[None]] = []
+                async for request in requests:
+                    kind = request.WhichOneof("message")
+                    if session is None:
+                        session, welcome = await self._greet(request)
+                        since = await self._perception.newest_map_entry(session.scene)
+                        outbox.put_nowait(welcome)
+                        announcer = asyncio.create_task(self._announce_applied(session, since, outbox))
+                    elif kind == "frame":
+                        if len(taken) == _TAKEN_AT_ONCE:
+                            await taken.pop(0)
+                        before = taken[-1] if taken else None
+                        taken.append(
+                            taking.create_task(self._take_in(session, request.frame, outbox, before))
+                        )
+                    else:
+                        raise InvalidInput(
+                            f"stream: expected frames after the hello, got {kind or 'an empty message'}"
+                        )
         finally:
             if announcer:
                 announcer.cancel()
@@ -131,15 +140,24 @@ class PerceptionServicer(perception_pb2_grpc.PerceptionServiceServicer):
         )
         return session, pb.StreamFramesResponse(welcome=welcome)
 
-    async def _take_in(self, session: Session, frame: pb.FrameUpload, outbox: _Outbox) -> None:
+    async def _take_in(
+        self,
+        session: Session,
+        frame: pb.FrameUpload,
+        outbox: _Outbox,
+        before: asyncio.Task[None] | None,
+    ) -> None:
+        """Checks and stores a frame beside others; it becomes durable after the one before it."""
         try:
             checked = await self._perception.check(session, _upload_value(frame), _onboard_value(frame))
             await self._acknowledge(session, outbox, pb.Ack.STATUS_RECEIVED, frame.sequence)
-            durable = await self._perception.keep(session, checked)
+            durable = await self._perception.keep(session, checked, before)
         except InvalidInput as error:
             await self._acknowledge(
                 session, outbox, pb.Ack.STATUS_REJECTED, frame.sequence, reason=str(error)
             )
+            if before:
+                await before  # whoever comes after this one comes after that one, too
             return
         await self._acknowledge(
             session,
@@ -161,6 +179,15 @@ class PerceptionServicer(perception_pb2_grpc.PerceptionServiceServicer):
         credits = await self._perception.credits(session.scene)
         ack = pb.Ack(sequence=sequence, status=status, credits=credits, **fields)
         outbox.put_nowait(pb.StreamFramesResponse(ack=ack))
+
+
+@contextlib.asynccontextmanager
+async def _raising_alone() -> AsyncIterator[None]:
+    """The first error of a group of tasks instead of the group."""
+    try:
+        yield
+    except ExceptionGroup as group:
+        raise group.exceptions[0] from None
 
 
 def _source_value(hello: pb.Hello) -> F64:
@@ -191,6 +218,7 @@ def _onboard_value(frame: pb.FrameUpload) -> list[OnboardDetection] | None:
             box=codec.box2_value(d.box),
             mask=OnboardMask(d.mask.x, d.mask.y, d.mask.png) if d.HasField("mask") else None,
             feature=tuple(d.feature),
+            second_feature=tuple(d.second_feature),
         )
         for d in frame.onboard.detections
     ]

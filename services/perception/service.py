@@ -19,7 +19,7 @@ from ovip.scene.types import F32, F64, Detection, Intrinsics
 from ovip.scene.words import normalize_word
 from ovip.store import Store
 from ovip.telemetry import get_logger
-from ovip.wire import decode_depth_units, decode_rgb
+from ovip.wire import decode_depth, decode_rgb
 from services.perception.config import Settings
 from services.perception.detecting import Detecting
 from services.perception.history import (
@@ -27,6 +27,7 @@ from services.perception.history import (
     FRAMES,
     STAGE,
     FrameHistory,
+    Images,
     StoredFrame,
     Upload,
     entry_fields,
@@ -69,12 +70,14 @@ class Durable:
 class Perception:
     """The use cases of the service."""
 
-    def __init__(self, store: Store, detecting: Detecting, settings: Settings) -> None:
+    def __init__(
+        self, store: Store, detecting: Detecting, settings: Settings, history: FrameHistory | None = None
+    ) -> None:
         self._store = store
         self._detecting = detecting
         self._settings = settings
         self._credits: dict[str, tuple[float, int]] = {}
-        self.history = FrameHistory(store)
+        self.history = history or FrameHistory(store)
 
     async def open_session(
         self, scene: str, robot_id: str, session_id: str, intrinsics: Intrinsics, world_from_source: F64
@@ -96,16 +99,23 @@ class Perception:
         """The frame as it may be kept; InvalidInput says what is wrong with it, and the session goes on."""
         return await asyncio.to_thread(self._check, session, upload, onboard)
 
-    async def keep(self, session: Session, upload: Upload) -> Durable:
+    async def keep(
+        self, session: Session, upload: Upload, after: asyncio.Task[None] | None = None
+    ) -> Durable:
         """Syncs a checked frame's images and appends it to the log; again for the same sequence changes nothing.
 
-        InvalidInput for a sequence that the session has passed over: the frame is not kept.
+        after: what must have ended well before it is appended. InvalidInput for a sequence that the session has
+        passed over: the frame is not kept.
         """
         bulk = (upload.rgb, upload.depth, upload.onboard)
         refs = await asyncio.gather(*(self._store.blobs.put(data) for data in bulk if data))
         frame_id = session.frame_id(upload.sequence)
         onboard_ref = refs[2] if upload.onboard else ""
         fields = entry_fields(frame_id, upload, session.intrinsics, refs[0], refs[1], onboard_ref)
+        if upload.images:
+            self.history.expect(refs[0], refs[1], upload.depth_scale, upload.images)
+        if after:
+            await after
         taken = await self._store.ingest(session.scene, session.name, upload.sequence, frame_id, fields)
         if not taken.log_id:
             last = await self._store.last_sequence(session.scene, session.name)
@@ -233,20 +243,18 @@ class Perception:
                 f"timestamp_ns: expected nanoseconds since the epoch, got {upload.timestamp_ns}"
             )
         check_pose(upload.world_from_camera)
-        decode_rgb(upload.rgb, session.intrinsics)
-        if not (np.isfinite(upload.depth_scale) and 1.0 <= upload.depth_scale <= 1e6):
-            raise InvalidInput(
-                f"depth image: expected a scale of 1 to 1e6 units per metre, got {upload.depth_scale}"
-            )
-        decode_depth_units(upload.depth, upload.depth_encoding, session.intrinsics)
+        rgb = decode_rgb(upload.rgb, session.intrinsics)
+        depth = decode_depth(upload.depth, upload.depth_encoding, upload.depth_scale, session.intrinsics)
+        upload = dataclasses.replace(upload, images=Images(rgb, depth))
         if onboard is None and self._detecting.models.name == "given":
             raise InvalidInput(
                 "this stack runs OVIP_MODELS=given: expected detections made on board with every frame"
             )
         if onboard is None:
             return upload
-        dimension = self._detecting.models.encoder.dimension
-        kept = check_onboard(onboard, session.intrinsics, dimension)
+        models = self._detecting.models
+        second = models.second_encoder.dimension if models.second_encoder else 0
+        kept = check_onboard(onboard, session.intrinsics, models.encoder.dimension, second)
         return dataclasses.replace(upload, onboard=encode_onboard(kept))
 
     async def _remember_source(self, scene: str, world_from_source: F64) -> None:

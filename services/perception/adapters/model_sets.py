@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Awaitable, Callable, Sequence
 
 from ovip.clients import VlmClient
@@ -19,7 +20,14 @@ _Embed = Callable[[Sequence[str]], Awaitable[F32]]
 
 
 def open_models(settings: Settings, vlm: VlmClient) -> Models:
-    """The set that OVIP_MODELS names, loaded; NotConfigured where files or packages are missing."""
+    """The set that OVIP_MODELS names, loaded, and the second encoder beside it where OVIP_SECOND_ENCODER names one.
+
+    NotConfigured where files or packages are missing.
+    """
+    return _with_second_encoder(_set_of(settings, vlm), settings)
+
+
+def _set_of(settings: Settings, vlm: VlmClient) -> Models:
     if settings.models == "given":
         return _given(settings)
     if settings.models == "full":
@@ -56,9 +64,15 @@ def _with_enumerator(models: Models, settings: Settings, vlm: VlmClient) -> Mode
     if settings.enumerator == "detector":
         return models
     fallback: Enumerator | None = models.enumerator if settings.enumerator == "auto" else None
-    return Models(
-        models.name, VlmEnumerator(vlm, fallback), models.grounder, models.segmenter, models.encoder
-    )
+    return dataclasses.replace(models, enumerator=VlmEnumerator(vlm, fallback))
+
+
+def _with_second_encoder(models: Models, settings: Settings) -> Models:
+    if not settings.second_encoder:
+        return models
+    from services.perception.adapters.full import open_second_encoder
+
+    return dataclasses.replace(models, second_encoder=open_second_encoder(settings))
 
 
 class _NoWords:

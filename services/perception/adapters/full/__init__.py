@@ -5,6 +5,7 @@ from __future__ import annotations
 from ovip.errors import NotConfigured
 from services.perception.config import Settings
 from services.perception.detecting import Models
+from services.perception.ports import CropEncoder
 
 
 def open_full(settings: Settings) -> Models:
@@ -31,3 +32,15 @@ def open_full(settings: Settings) -> Models:
         segmenter=Sam2Segmenter(settings.full_segmenter, device),
         encoder=encoder,
     )
+
+
+def open_second_encoder(settings: Settings) -> CropEncoder:
+    """The DINO that OVIP_SECOND_ENCODER names, on OVIP_FULL_DEVICE; NotConfigured as in `open_full`."""
+    try:
+        from services.perception.adapters.full.dino import DinoEncoder
+        from services.perception.adapters.full.loading import checked_device
+    except ImportError as error:
+        raise NotConfigured(
+            f"OVIP_SECOND_ENCODER: the package {error.name!r} is missing: pip install 'ovip-sg[full]'"
+        ) from error
+    return DinoEncoder(settings.second_encoder, checked_device(settings.full_device))

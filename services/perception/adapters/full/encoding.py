@@ -15,13 +15,12 @@ from transformers import AutoModel, AutoProcessor
 from ovip.errors import NotConfigured
 from ovip.scene.features import normalize
 from ovip.scene.types import F32, U8, Frame
+from services.perception.adapters.full.crops import crop
 from services.perception.adapters.full.loading import loading
 from services.perception.domain.boxes2d import ScoredBox
-from services.perception.domain.segmentation import pixels_of
 
 _SETTING = "OVIP_FULL_ENCODER"
 _OPEN_CLIP = ("hf-hub:", "local-dir:")
-_MARGIN = 0.1  # context around the box, share of its size
 _BATCH = 64
 
 
@@ -57,7 +56,7 @@ class ClipEncoder:
         self._lock = threading.Lock()
 
     async def embed_crops(self, frame: Frame, boxes: Sequence[ScoredBox]) -> F32:
-        return await asyncio.to_thread(self.embed_images_now, [_crop(frame.rgb, box) for box in boxes])
+        return await asyncio.to_thread(self.embed_images_now, [crop(frame.rgb, box) for box in boxes])
 
     async def embed_texts(self, texts: Sequence[str]) -> F32:
         return await asyncio.to_thread(self.embed_texts_now, texts)
@@ -129,12 +128,3 @@ class OpenClip:
 def _features(output: Any) -> F32:
     """transformers 5 wraps the features, transformers 4 and open_clip do not."""
     return np.asarray(getattr(output, "pooler_output", output).float().cpu().numpy(), np.float32)
-
-
-def _crop(rgb: U8, box: ScoredBox) -> U8:
-    """The box with some of what is around it; at least one pixel."""
-    height, width = rgb.shape[:2]
-    x0, y0, x1, y1 = pixels_of(box.box, rgb.shape)
-    dx, dy = round(_MARGIN * (x1 - x0)), round(_MARGIN * (y1 - y0))
-    left, top = min(max(x0 - dx, 0), width - 1), min(max(y0 - dy, 0), height - 1)
-    return np.ascontiguousarray(rgb[top : max(y1 + dy, top + 1), left : max(x1 + dx, left + 1)])

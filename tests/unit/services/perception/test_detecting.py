@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,10 +83,41 @@ async def test_the_same_frame_and_words_give_the_same_bytes() -> None:
     assert len({d.detection_id for d in one.detections}) == 2
 
 
-async def test_a_late_batch_carries_no_surface() -> None:
+async def test_a_batch_carries_what_the_frame_saw_through() -> None:
+    near = frame(2.0, k=K, rgb=painted_rgb("cup"))
+    near.depth[:4, :4], near.depth[:4, 4:8] = 11.0, 13.0
+
+    batch = await _detecting(max_depth=6.0).batch(near, ["cup"], None, late=False)
+
+    assert batch.nearest.shape == (18, 24)
+    assert batch.nearest[0, :3].tolist() == [11.0, 0.0, 2.0]  # farther than twice max_depth is not known
+
+
+async def test_a_second_encoder_looks_at_every_box_and_a_robot_s_own_second_feature_goes_first() -> None:
+    models = replace(PaintedModels().as_models(), second_encoder=PaintedModels())
+    own = OnboardDetection("cup", 0.9, Box2(10, 10, 38, 38), second_feature=(0.0, 2.0))
+    bare = OnboardDetection("chair", 0.8, Box2(50, 10, 78, 38))
+    detecting = Detecting(models, LiftParams())
+
+    (cup,) = await detecting.detect(_seen("cup"), ["cup"], None)
+    sent, made = await detecting.detect(_seen("cup", "chair"), ["cup", "chair"], [own, bare])
+
+    assert cup.second_feature.tolist() == axis(0).tolist()
+    assert sent.second_feature.tolist() == [0.0, 1.0]
+    assert made.second_feature.tolist() == axis(1).tolist()
+
+
+async def test_without_a_second_encoder_there_is_no_second_feature() -> None:
+    (cup,) = await _detecting().detect(_seen("cup"), ["cup"], None)
+
+    assert cup.second_feature.shape == (0,)
+
+
+async def test_a_late_batch_carries_neither_surface_nor_depth() -> None:
     now = await _detecting().batch(_seen("cup"), ["cup"], None, late=False)
     late = await _detecting().batch(_seen("cup"), ["cup"], None, late=True)
 
     assert len(now.surface) > 0
     assert len(late.surface) == 0
+    assert late.nearest.size == 0
     assert late.late and not now.late

@@ -21,6 +21,7 @@ from services.perception.onboard import (
     encode_onboard,
     feature_of,
     mask_of,
+    second_feature_of,
 )
 from tests.builders import camera, png, png_claiming
 
@@ -34,6 +35,7 @@ DETECTIONS = st.builds(
     st.builds(Box2, FLOATS, FLOATS, FLOATS, FLOATS),
     st.none() | st.builds(OnboardMask, st.integers(0, 9999), st.integers(0, 9999), st.binary(max_size=30)),
     st.lists(FLOATS, max_size=5).map(tuple),
+    st.lists(FLOATS, max_size=3).map(tuple),
 )
 
 
@@ -43,6 +45,13 @@ def test_detections_come_back_from_their_bytes_the_same(detections: list[Onboard
 
     assert decode_onboard(data) == tuple(detections)
     assert encode_onboard(decode_onboard(data)) == data
+
+
+def test_detections_kept_before_there_were_second_features_have_none() -> None:
+    head = b'[{"label": "cup", "score": 0.9, "box": [10, 10, 30, 30], "mask": null, "dimension": 2}]'
+    data = len(head).to_bytes(8, "little") + head + np.array([1, 2], "<f4").tobytes()
+
+    assert decode_onboard(data) == (replace(CUP, feature=(1.0, 2.0)),)
 
 
 def test_labels_are_normalised() -> None:
@@ -73,6 +82,9 @@ def test_a_box_is_clipped_to_the_image_so_that_its_view_weighs_no_more_than_it_s
         ({"feature": (1.0, 2.0)}, "expected no feature, or 4 finite numbers .* got 2"),
         ({"feature": (0.0,) * 4}, "expected no feature, or 4 finite numbers"),
         ({"feature": (math.nan, 1.0, 1.0, 1.0)}, "expected no feature, or 4 finite numbers"),
+        ({"second_feature": (1.0, 2.0)}, "expected no second feature, or 3 finite numbers .* got 2"),
+        ({"second_feature": (0.0,) * 3}, "expected no second feature, or 3 finite numbers"),
+        ({"second_feature": (math.inf, 1.0, 1.0)}, "expected no second feature, or 3 finite numbers"),
         ({"mask": OnboardMask(0, 0, b"")}, "mask of 'cup': expected a PNG of at most 64x48, got 0 bytes"),
         ({"mask": OnboardMask(60, 0, png(np.ones((5, 5), np.uint8)))}, r"5x5 at \(60, 0\) leaves the image"),
         ({"mask": OnboardMask(2**32 - 1, 0, png(np.ones((5, 5), np.uint8)))}, "leaves the image"),
@@ -81,7 +93,17 @@ def test_a_box_is_clipped_to_the_image_so_that_its_view_weighs_no_more_than_it_s
 )
 def test_a_detection_that_is_wrong_is_refused_in_words(change: dict[str, Any], words: str) -> None:
     with pytest.raises(InvalidInput, match=words):
-        check_onboard([replace(CUP, **change)], K, 4)
+        check_onboard([replace(CUP, **change)], K, 4, second_dimension=3)
+
+
+def test_second_features_of_a_stack_without_a_second_encoder_are_of_any_size_but_one() -> None:
+    seen = [CUP, replace(CUP, second_feature=(1.0,) * 5), replace(CUP, second_feature=(0.5,) * 5)]
+
+    assert [len(d.second_feature) for d in check_onboard(seen, K, 4)] == [0, 5, 5]
+    with pytest.raises(
+        InvalidInput, match=r"detection 3 \(cup\): expected no second feature, or 5 finite .* got 2"
+    ):
+        check_onboard([*seen, replace(CUP, second_feature=(1.0, 2.0))], K, 4)
 
 
 def test_the_words_name_which_detection_is_wrong() -> None:
@@ -114,3 +136,8 @@ def test_a_feature_becomes_a_unit_vector() -> None:
 
     assert feature == pytest.approx([0, 0.6, 0.8, 0])
     assert feature_of(CUP) is None
+
+
+def test_a_second_feature_becomes_a_unit_vector() -> None:
+    assert second_feature_of(replace(CUP, second_feature=(3.0, 4.0))) == pytest.approx([0.6, 0.8])
+    assert second_feature_of(CUP) is None

@@ -19,7 +19,8 @@ from tests.builders import camera, colour_noise, frame
 pytest.importorskip("torch", reason="the full models need torch")
 pytest.importorskip("transformers", reason="the full models need transformers")
 
-from services.perception.adapters.full import open_full
+from services.perception.adapters.full import open_full, open_second_encoder
+from services.perception.adapters.full.dino import DinoEncoder
 from services.perception.adapters.full.encoding import open_encoder
 from services.perception.adapters.full.grounding import open_grounder
 from services.perception.adapters.full.naming import NamingParams, Vocabulary, ZeroShotEnumerator
@@ -38,6 +39,8 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tiny_models.write_omdet_turbo(root / "omdet")
     tiny_models.write_sam2(root / "sam2")
     tiny_models.write_clip(root / "clip")
+    tiny_models.write_dinov2(root / "dinov2")
+    tiny_models.write_first_dino(root / "first-dino")
     return root
 
 
@@ -114,6 +117,43 @@ async def test_open_clips_own_format_is_read_too(tmp_path: Path, seen: Frame) ->
     encoder = open_encoder(f"local-dir:{tiny_models.write_open_clip(tmp_path / 'oc')}", "cpu")
     assert (await encoder.embed_crops(seen, [_NO_PIXELS])).shape == (1, 24)
     assert (await encoder.embed_texts(["cup"])).shape == (1, 24)
+
+
+@pytest.mark.parametrize("model", ["dinov2", "first-dino"])
+async def test_a_second_encoder_gives_unit_features_that_are_the_same_again_in_any_company(
+    weights: Path, seen: Frame, model: str
+) -> None:
+    encoder = DinoEncoder(str(weights / model), "cpu")
+    cup, lamp = ScoredBox("cup", 0.9, Box2(2, 2, 30, 20)), ScoredBox("lamp", 0.9, Box2(30, 10, 60, 40))
+
+    both = await encoder.embed_crops(seen, [cup, lamp])
+    many = await DinoEncoder(str(weights / model), "cpu").embed_crops(seen, [lamp] * 70 + [cup, _NO_PIXELS])
+
+    assert (encoder.dimension, encoder.space) == (32, f"dino:{model}")
+    assert both.shape == (2, 32)
+    assert np.linalg.norm(many, axis=1) == pytest.approx(np.ones(72), abs=1e-5)
+    assert many[70] == pytest.approx(both[0], abs=1e-5)
+    assert many[69] == pytest.approx(both[1], abs=1e-5)
+    assert float(both[0] @ both[1]) < 0.9999
+    assert (await encoder.embed_crops(seen, [])).shape == (0, 32)
+
+
+async def test_a_second_encoders_label_changes_nothing(weights: Path, seen: Frame) -> None:
+    encoder = DinoEncoder(str(weights / "dinov2"), "cpu")
+    boxes = [ScoredBox(label, 0.9, Box2(2, 2, 30, 20)) for label in ("cup", "lamp")]
+
+    features = await encoder.embed_crops(seen, boxes)
+
+    assert features[0] == pytest.approx(features[1], abs=1e-5)
+
+
+def test_the_setting_names_the_second_encoder(weights: Path) -> None:
+    named = _settings(weights, second_encoder=str(weights / "dinov2"))
+    assert open_second_encoder(named).space == "dino:dinov2"
+    with pytest.raises(NotConfigured, match=r"OVIP_SECOND_ENCODER.*DINO family.*type clip"):
+        open_second_encoder(_settings(weights, second_encoder=str(weights / "clip")))
+    with pytest.raises(NotConfigured, match=r"OVIP_SECOND_ENCODER.*nowhere"):
+        open_second_encoder(_settings(weights, second_encoder=str(weights / "nowhere")))
 
 
 async def test_enumeration_names_words_of_its_vocabulary_only(weights: Path, seen: Frame) -> None:

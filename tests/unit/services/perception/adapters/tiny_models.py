@@ -13,12 +13,15 @@ from tokenizers.pre_tokenizers import BertPreTokenizer
 from tokenizers.processors import BertProcessing
 from transformers import (
     BertConfig,
+    BitImageProcessor,
     CLIPConfig,
     CLIPImageProcessor,
     CLIPModel,
     CLIPProcessor,
     CLIPTextConfig,
     DetrImageProcessor,
+    Dinov2Config,
+    Dinov2Model,
     GroundingDinoConfig,
     GroundingDinoForObjectDetection,
     GroundingDinoImageProcessor,
@@ -36,6 +39,9 @@ from transformers import (
     Sam2Model,
     Sam2Processor,
     SwinConfig,
+    ViTConfig,
+    ViTImageProcessor,
+    ViTModel,
 )
 from transformers.models.sam2.configuration_sam2 import Sam2HieraDetConfig, Sam2VisionConfig
 
@@ -224,6 +230,34 @@ def write_open_clip(folder: Path) -> Path:
     (folder / "open_clip_config.json").write_text(
         json.dumps({"model_cfg": config, "preprocess_cfg": settings})
     )
+    return folder
+
+
+def write_dinov2(folder: Path) -> Path:
+    """A DINOv2 of 32 dimensions for images of 28 pixels."""
+    torch.manual_seed(0)
+    config = Dinov2Config(
+        hidden_size=32, num_hidden_layers=1, num_attention_heads=2, mlp_ratio=2, image_size=28, patch_size=14
+    )
+    Dinov2Model(config).save_pretrained(folder)
+    size = {"height": 28, "width": 28}
+    BitImageProcessor(size={"shortest_edge": 32}, crop_size=size).save_pretrained(folder)
+    return folder
+
+
+def write_first_dino(folder: Path) -> Path:
+    """A first DINO, which is a ViT without a pooler."""
+    torch.manual_seed(0)
+    config = ViTConfig(
+        hidden_size=32,
+        intermediate_size=32,
+        num_hidden_layers=1,
+        num_attention_heads=2,
+        image_size=32,
+        patch_size=16,
+    )
+    ViTModel(config, add_pooling_layer=False).save_pretrained(folder)
+    ViTImageProcessor(size={"height": 32, "width": 32}).save_pretrained(folder)
     return folder
 
 

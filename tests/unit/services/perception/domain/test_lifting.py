@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ovip.scene.types import F32, Bools, Frame
+from ovip.scene.types import Bools, Frame
 from ovip.scene.voxels import voxel_keys
-from services.perception.domain.lifting import LiftParams, largest_cluster, lift, surface_cloud
+from services.perception.domain.lifting import LiftParams, lift, lift_all, surface_cloud
 from tests.builders import camera, colour_noise, frame, pose
 
 K = camera(160, 120, 150.0)
@@ -143,28 +144,52 @@ def test_whatever_is_lifted_lies_in_its_box_and_the_same_frame_gives_the_same_po
     assert one.points.shape == one.colors.shape
 
 
-# Clusters
+# Many masks
 
 
-def _line(start: float, count: int) -> F32:
-    return np.array([[start + 0.05 * i, 0, 0] for i in range(count)], np.float32)
+def test_masks_lifted_together_are_lifted_as_each_alone_and_what_is_dropped_is_none() -> None:
+    seen, sphere = _sphere(1.0, 0.15)
+    depth = np.where(seen.depth > 0, seen.depth, np.float32(1.5))
+    seen = frame(depth, k=K, rgb=colour_noise(K, 1), world_from_camera=pose(1, 2, 1, pitch=0.3))
+    nothing, corner = np.zeros_like(sphere), _mask(slice(0, 30), slice(0, 40))
+
+    made = lift_all(seen, [corner, nothing, sphere], PARAMS)
+
+    assert made[1] is None
+    for mask, together in ((corner, made[0]), (sphere, made[2])):
+        alone = lift(seen, mask, PARAMS)
+        assert together is not None and alone is not None
+        assert together.points.tobytes() == alone.points.tobytes()
+        assert together.colors.tobytes() == alone.colors.tobytes()
+        assert together.box.tolist() == alone.box.tolist()
+        assert (np.diff(voxel_keys(together.points, PARAMS.voxel)) > 0).all()
 
 
-def test_points_in_steps_of_the_radius_are_one_cluster() -> None:
-    points = np.concatenate([_line(0.0, 5), _line(1.0, 3)])
-
-    assert largest_cluster(points, 0.06).tolist() == [True] * 5 + [False] * 3
+def test_no_masks_lift_to_nothing() -> None:
+    assert lift_all(frame(2.0, k=K), [], PARAMS) == []
 
 
 def test_equal_clusters_tie_to_the_one_of_the_first_point() -> None:
-    points = np.concatenate([_line(1.0, 3), _line(0.0, 3)])
+    """Two walls of 12 x 12 pixels, alike; the left one has the lower x."""
+    depth = np.full((K.height, K.width), 2.0, np.float32)
+    mask = _mask(slice(40, 60), slice(20, 40)) | _mask(slice(40, 60), slice(100, 120))
 
-    assert largest_cluster(points, 0.06).tolist() == [True] * 3 + [False] * 3
+    lifted = lift(frame(depth, k=K), mask, PARAMS)
+
+    assert lifted is not None
+    assert lifted.points[:, 0].max() < 0
 
 
-def test_no_points_and_one_point_are_clusters() -> None:
-    assert largest_cluster(np.zeros((0, 3), np.float32), 0.06).shape == (0,)
-    assert largest_cluster(np.zeros((1, 3), np.float32), 0.06).tolist() == [True]
+def test_what_is_near_is_thinned_and_loses_no_voxel() -> None:
+    """At 0.5 m and f 150 a voxel of 5 cm is 15 pixels wide: one pixel of four is enough."""
+    mask, coarse = _mask(slice(20, 100), slice(20, 140)), LiftParams(voxel=0.05, cluster_cell=0.1)
+
+    thin = lift(frame(0.5, k=K), mask, coarse)
+    full = lift(frame(0.5, k=K), mask, replace(coarse, samples=1e9))
+
+    assert thin is not None and full is not None
+    assert np.array_equal(voxel_keys(thin.points, 0.05), voxel_keys(full.points, 0.05))
+    assert thin.points.tobytes() != full.points.tobytes()
 
 
 # Surfaces
