@@ -7,7 +7,7 @@ from pydantic import Field
 from ovip.config import KernelSettings
 from services.mapper.domain.association import AssociationParams
 from services.mapper.domain.fusion import FusionParams, Weighting
-from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.params import MapParams
 from services.mapper.domain.spatial import Spatial
 from services.mapper.domain.upkeep import UpkeepParams
 
@@ -16,7 +16,7 @@ _ASSOCIATION = AssociationParams()
 
 
 class Settings(KernelSettings):
-    """How detections become objects, and how often the map is written down whole."""
+    """How detections become objects, and how often the map is written down."""
 
     mapper_port: int = Field(50052, ge=0, le=65535, description="port the mapper listens on; 0: any free one")
     tau: float = Field(
@@ -38,7 +38,10 @@ class Settings(KernelSettings):
     confirm_frames: int = Field(
         _UPKEEP.confirm_frames, ge=1, description="frames that must see an object to believe it"
     )
-    snapshot_every: int = Field(50, ge=1, description="commits between snapshots of the whole map")
+    snapshot_every: int = Field(50, ge=1, description="map versions between snapshots")
+    settle_after_s: float = Field(
+        30.0, gt=0, description="seconds without a frame after which the last ones get their upkeep"
+    )
 
     @property
     def port(self) -> int:

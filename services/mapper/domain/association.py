@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ovip.scene.boxes import touching
+from ovip.scene.boxes import pairwise_touching
 from ovip.scene.types import F32, F64, I64
 from services.mapper.domain.spatial import Spatial, spatial_scores
 
 NEW = -1
+_PAIRS_AT_ONCE = 4096  # of features in memory
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,32 +40,21 @@ class Instances:
     """
 
     boxes: F64
-    features: F32
+    features: F32 | F64
     labels: Sequence[str]
     clouds: Sequence[F32] = ()
 
-    def at(self, index: Sequence[int] | I64) -> Instances:
-        """Only those at `index`."""
-        return Instances(
-            self.boxes[index],
-            self.features[index],
-            [self.labels[int(i)] for i in index],
-            [self.clouds[int(i)] for i in index] if self.clouds else (),
-        )
+    def __len__(self) -> int:
+        return len(self.boxes)
 
 
 def association_scores(detections: Instances, objects: Instances, params: AssociationParams) -> F64:
-    """phi_ij of M detections against N objects -> `(M, N)`.
+    """phi_ij of M detections against N objects -> `(M, N)`: every pair, as the equation stands.
 
     phi_ij = (1 + a) IoU(b_i, B_j) + (1 - a) cos(f_i, g_j) - w_L [label_i != mode(C_j)]
     """
-    spatial = spatial_scores(
-        params.spatial, detections.boxes, objects.boxes, detections.clouds, objects.clouds
-    )
-    cosine = _cosines(detections.features, objects.features)
-    differs = np.array([[a != b for b in objects.labels] for a in detections.labels], dtype=np.float64)
-    penalty = params.label_penalty * differs.reshape(spatial.shape)
-    return (1 + params.alpha) * spatial + (1 - params.alpha) * cosine - penalty
+    i, j = (index.ravel() for index in np.indices((len(detections), len(objects))))
+    return _pair_scores(detections, objects, i, j, params).reshape(len(detections), len(objects))
 
 
 def associate_dense(scores: F64, tau: float) -> I64:
@@ -76,28 +66,44 @@ def associate_dense(scores: F64, tau: float) -> I64:
 
 
 def associate(detections: Instances, objects: Instances, params: AssociationParams) -> I64:
-    """The same assignment as `associate_dense(association_scores(...))`, scoring only objects that can win.
+    """The same assignment as `associate_dense(association_scores(...))`, scoring only pairs that can win.
 
     An object whose box shares no volume with b_i has a spatial score of at most 0 and can score at most (1 - a).
-    Where that is <= tau it never wins, so only touching boxes are scored (SPEC 2.2); where tau < (1 - a) every
-    object is.
+    Where that is <= tau it never wins, so only touching boxes are scored (SPEC 2.2), and objects that touch no
+    detection may be left out beforehand. Where `needs_all`, every pair is scored.
     """
-    if 1 - params.alpha > params.tau:
+    if needs_all(params):
         return associate_dense(association_scores(detections, objects, params), params.tau)
-    assigned = np.full(len(detections.boxes), NEW, np.int64)
-    for i in range(len(assigned)):
-        near = np.flatnonzero(touching(detections.boxes[i], objects.boxes))
-        scores = association_scores(detections.at([i]), objects.at(near), params)
-        best = associate_dense(scores, params.tau)[0]
-        assigned[i] = near[best] if best != NEW else NEW
-    return assigned
+    i, j = np.nonzero(pairwise_touching(detections.boxes, objects.boxes))
+    scores = np.full((len(detections), len(objects)), -np.inf)
+    scores[i, j] = _pair_scores(detections, objects, i, j, params)
+    return associate_dense(scores, params.tau)
 
 
-def _cosines(a: F32, b: F32) -> F64:
-    """cos of unit features `(M, D)` and `(N, D)` -> `(M, N)`, each pair's the same to the bit in any company.
+def needs_all(params: AssociationParams) -> bool:
+    """Whether features alone can reach tau, so that an object anywhere may win."""
+    return 1 - params.alpha > params.tau
+
+
+def _pair_scores(detections: Instances, objects: Instances, i: I64, j: I64, params: AssociationParams) -> F64:
+    spatial = spatial_scores(
+        params.spatial, detections.boxes[i], objects.boxes[j], i, j, detections.clouds, objects.clouds
+    )
+    cosine = _cosines(detections.features, objects.features, i, j)
+    differs = np.array(detections.labels, object)[i] != np.array(objects.labels, object)[j]
+    score: F64 = (1 + params.alpha) * spatial + (1 - params.alpha) * cosine - params.label_penalty * differs
+    return score
+
+
+def _cosines(a: F32 | F64, b: F32 | F64, i: I64, j: I64) -> F64:
+    """cos of unit features `a[i]` and `b[j]` `(P,)`, each pair's the same to the bit in any company.
 
     A matrix product rounds a pair differently by where it stands; equal objects would tie by chance. Rounding
     above 1 would let an object win that the bound of SPEC 2.2 rules out.
     """
-    product = np.einsum("id,jd->ij", a.astype(np.float64), b.astype(np.float64))
-    return np.asarray(np.clip(product, -1.0, 1.0), np.float64)
+    a, b = a.astype(np.float64, copy=False), b.astype(np.float64, copy=False)
+    cosines = np.empty(len(i))
+    for at in range(0, len(i), _PAIRS_AT_ONCE):
+        part = slice(at, at + _PAIRS_AT_ONCE)
+        cosines[part] = np.einsum("pd,pd->p", a[i[part]], b[j[part]])
+    return np.clip(cosines, -1.0, 1.0)

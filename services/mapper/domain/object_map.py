@@ -1,70 +1,40 @@
-"""The object map: one state, one verb. The same batches in the same order give the same map, bit for bit."""
+"""The object map: one state, each verb one version. The same steps in the same order give the same map to the bit."""
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
-import io
-import json
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ovip.errors import Corrupt, InvalidInput
-from ovip.scene.boxes import pairwise_iou, touching
-from ovip.scene.types import F32, F64, I64, U8, Box2, Detection, DetectionBatch, MapDelta, MapObject
-from services.mapper.domain.association import NEW, AssociationParams, Instances, associate
-from services.mapper.domain.cloud import VoxelCloud
-from services.mapper.domain.fusion import FusionParams, fusion_weight
+from ovip.errors import InvalidInput
+from ovip.scene.edits import EditRequest
+from ovip.scene.types import (
+    F32,
+    F64,
+    U8,
+    Detection,
+    DetectionBatch,
+    MapDelta,
+    MapObject,
+    Presence,
+    StepKind,
+)
+from services.mapper.domain.association import NEW, Instances, associate, needs_all
+from services.mapper.domain.cloud import clouds_of
+from services.mapper.domain.duplicates import merge_duplicates
+from services.mapper.domain.edits import apply_edit, own_part
+from services.mapper.domain.fusion import fusion_weight
+from services.mapper.domain.joining import join_maps
+from services.mapper.domain.objects import Changes, ObjectRecord, ObjectTable, added, remembered
+from services.mapper.domain.params import MapParams
+from services.mapper.domain.snapshot import Head, read_segments, record_digest, write_head, write_segment
 from services.mapper.domain.spatial import Spatial
-from services.mapper.domain.upkeep import UpkeepParams, denoised, inside, overlap
+from services.mapper.domain.surroundings import recognise_moves, relate, watch
+from services.mapper.domain.upkeep import denoised
 
-SNAPSHOT_FORMAT = 1
-
-
-@dataclass(frozen=True, slots=True)
-class MapParams:
-    """Everything that decides how detections become objects. voxel: metres (paper: 0.02)."""
-
-    association: AssociationParams = AssociationParams()
-    fusion: FusionParams = FusionParams()
-    upkeep: UpkeepParams = UpkeepParams()
-    voxel: float = 0.02
-
-
-@dataclass(slots=True)
-class _Object:
-    """One object's state: o_j of the paper with its accumulators S_j, Omega_j, C_j."""
-
-    object_id: str
-    cloud: VoxelCloud
-    box: F64
-    feature_sum: F64
-    view_weight: float
-    label_counts: dict[str, int]
-    observations: int
-    frames: int
-    last_frame_id: str
-    first_seen_ns: int
-    last_seen_ns: int
-    best_weight: float
-    best_frame_id: str
-    best_box2: Box2
-    last_batch: int
-    version: int
-    label: str = field(init=False)
-    feature: F32 = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.refresh()
-
-    def refresh(self) -> None:
-        """mode(C_j), ties to the label seen first; g_j = S_j / |S_j| (Eq. 4)."""
-        self.label = max(self.label_counts, key=lambda label: self.label_counts[label])
-        self.feature = (self.feature_sum / max(float(np.linalg.norm(self.feature_sum)), 1e-12)).astype(
-            np.float32
-        )
+_SETTLED_SHARE = 0.02  # of a cloud's voxels, and
+_SETTLED_METRES = 0.01  # of its box: what changed less since the last upkeep needs none
 
 
 class ObjectMap:
@@ -79,149 +49,192 @@ class ObjectMap:
         self.version = 0
         self.frames = 0
         self.detections = 0
-        self.aliases: dict[str, str] = {}
-        self._batches = 0
-        self._born = 0
-        self._dimension: int | None = None
-        self._objects: dict[str, _Object] = {}
-        self._dirty: set[str] = set()
+        self.batches = 0
+        self.upkept_batches = 0
+        self.table = ObjectTable()
+
+    # Verbs: each makes one version
 
     def integrate(self, batch: DetectionBatch) -> MapDelta:
-        """Associates and fuses one frame's detections, merges what became one; every `upkeep.every` batches, upkeep.
+        """Associates and fuses one frame's detections, and looks what the frame saw through.
 
-        One version a batch."""
+        InvalidInput, and nothing changed, where a detection cannot be the map's.
+        """
         self._check(batch)
-        self.version += 1
-        self._batches += 1
+        changes = self._begin()
+        self.batches += 1
         self.frames += not batch.late
         self.detections += len(batch.detections)
-        created, updated = self._fuse_batch(batch)
-        aliases = self._merge_duplicates(created | updated) if self.params.upkeep.eager else {}
-        removed: list[str] = []
-        if self._batches % self.params.upkeep.every == 0:
-            updated, aliases, removed = self._keep_up(updated, aliases)
-        return self._delta(batch.frame_id, created, updated, aliases, removed)
+        seen = self._fuse(batch, self._associated(batch.detections)) if batch.detections else set()
+        watch(self.table, batch, seen, self.params)
+        if self.params.upkeep.eager:
+            merge_duplicates(self.table, seen & self.table.dirty, self.params.upkeep)
+        return changes.delta(StepKind.FRAME, batch.frame_id)
 
-    def settle(self) -> MapDelta:
-        """Upkeep of what changed since the last one, as after the last frame of a recording (SPEC 2.6). One version."""
-        self.version += 1
-        updated, aliases, removed = self._keep_up(set(), {})
-        return self._delta("", set(), updated, aliases, removed)
+    @property
+    def batches_since_upkeep(self) -> int:
+        """Batches integrated since the last upkeep."""
+        return self.batches - self.upkept_batches
 
-    def _keep_up(
-        self, updated: set[str], aliases: dict[str, str]
-    ) -> tuple[set[str], dict[str, str], list[str]]:
-        updated = updated | self._denoise()
-        aliases = aliases | self._merge_duplicates(self._dirty)
-        removed = self._forget()
-        self._dirty.clear()
-        return updated, aliases, removed
+    @property
+    def upkeep_due(self) -> bool:
+        """Whether `upkeep.every` batches came since the last upkeep."""
+        return self.batches_since_upkeep >= self.params.upkeep.every
 
-    def _delta(
-        self,
-        frame_id: str,
-        created: set[str],
-        updated: set[str],
-        aliases: dict[str, str],
-        removed: list[str],
-    ) -> MapDelta:
-        """What changed, and the new version written on it."""
-        updated = updated | {self.resolve(survivor) for survivor in aliases.values()}
-        for object_id in created | updated:
-            if object_id in self._objects:
-                self._objects[object_id].version = self.version
-        gone = set(removed) | set(aliases)
-        return MapDelta(
-            version=self.version,
-            frame_id=frame_id,
-            created=tuple(sorted(created - gone)),
-            updated=tuple(sorted(updated - created - gone)),
-            removed=tuple(sorted(removed)),
-            aliases=dict(sorted(aliases.items())),
-        )
+    @property
+    def changed_since_upkeep(self) -> bool:
+        """Whether upkeep would find anything to look at."""
+        return bool(self.table.dirty)
 
-    def objects(self, include_unconfirmed: bool = False) -> tuple[MapObject, ...]:
+    def upkeep(self) -> MapDelta:
+        """Denoises what changed since the last upkeep, merges duplicates, drops noise, relates (SPEC 2.6, 2.8, 2.9)."""
+        changes = self._begin()
+        self.upkept_batches = self.batches
+        for record in self._unsettled():
+            self._denoise(record)
+        merge_duplicates(self.table, self.table.dirty, self.params.upkeep)
+        self._forget_noise()
+        recognise_moves(self.table, self.params)
+        relate(self.table, self._unsettled(), self.params)
+        for record in filter(None, map(self.table.get, self.table.dirty)):
+            record.settled, record.fresh = (len(record.cloud), self.table.box(record)), None
+            self.table.touch(record, seen=False)
+        self.table.dirty.clear()
+        return changes.delta(StepKind.UPKEEP)
+
+    def edit(self, request: EditRequest) -> MapDelta:
+        """An operator's edit. Conflict, NotFound or InvalidInput, and nothing changed, where it cannot be."""
+        changes = self._begin()
+        try:
+            apply_edit(self.table, request, self.params)
+        except BaseException:
+            self.version -= 1
+            raise
+        return changes.delta(StepKind.EDIT)
+
+    def join(self, other: ObjectMap, world_from_other: F64) -> tuple[MapDelta, dict[str, str]]:
+        """All objects of another map, moved by a rigid `(4, 4)`; also says which of its ids became which (SPEC 2.7).
+
+        InvalidInput, and nothing changed, where the two cannot be one map.
+        """
+        changes = self._begin()
+        try:
+            ids = join_maps(self.table, other.table, world_from_other, self.params, self.batches)
+        except BaseException:
+            self.version -= 1
+            raise
+        self.frames += other.frames
+        self.detections += other.detections
+        self.batches += other.batches
+        return changes.delta(StepKind.JOIN), ids
+
+    def adopt(self, params: MapParams) -> MapDelta:
+        """From this version on other settings hold."""
+        changes = self._begin()
+        self.params = params
+        self.table.reconsider()
+        return changes.delta(StepKind.SETTINGS)
+
+    # Reading
+
+    def objects(
+        self, include_unconfirmed: bool = False, include_departed: bool = False
+    ) -> tuple[MapObject, ...]:
         """The objects in order of birth, as readers see them."""
-        return tuple(_as_read(o) for o in self._shown(include_unconfirmed))
+        return tuple(
+            self._as_read(r)
+            for r in self.table
+            if not r.deleted
+            and (include_unconfirmed or self._confirmed(r))
+            and (include_departed or r.presence is Presence.PRESENT)
+        )
 
     def find(self, object_id: str) -> MapObject | None:
         """One object by its id or by an id merged into it."""
-        found = self._objects.get(self.resolve(object_id))
-        return _as_read(found) if found else None
+        record = self._record(object_id)
+        return self._as_read(record) if record else None
+
+    def deleted_at(self, object_id: str) -> int:
+        """The version at which an operator deleted the object of this id or alias; 0 where none did."""
+        record = self.table.get(self.table.resolve(object_id))
+        return record.deleted if record else 0
 
     def resolve(self, object_id: str) -> str:
         """The id that an alias stands for now; an id itself where it is none."""
-        while object_id in self.aliases:
-            object_id = self.aliases[object_id]
-        return object_id
+        return self.table.resolve(object_id)
 
     def cloud_of(self, object_id: str) -> tuple[F32, U8] | None:
         """Points `(V, 3)` and colours `(V, 3)` of an object."""
-        found = self._objects.get(self.resolve(object_id))
-        return (found.cloud.points, found.cloud.colors) if found else None
+        record = self._record(object_id)
+        return (record.cloud.points, record.cloud.colors) if record else None
+
+    @property
+    def aliases(self) -> dict[str, str]:
+        """Ids merged away -> what they were merged into."""
+        return self.table.aliases
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the objects' arrays."""
+        row = 8 * (self.table.dimension or 0) + 48
+        return sum(r.cloud.nbytes + r.second_sum.nbytes + row for r in self.table)
 
     def state_hash(self) -> str:
-        """SHA-256 over the whole state: equal hashes, equal maps."""
-        return hashlib.sha256(self.snapshot()).hexdigest()
+        """SHA-256 over the whole state: equal hashes, equal maps. Costs what changed since it was last asked."""
+        digest = hashlib.sha256(write_head(self._head(since=0)))
+        for record in self.table:
+            record.digest = record.digest or record_digest(self.table, record)
+            digest.update(record.digest)
+        return digest.hexdigest()
 
-    def snapshot(self) -> bytes:
-        """The whole state as bytes, the same for the same state."""
-        objects = list(self._objects.values())
-        head = {
-            "format": SNAPSHOT_FORMAT,
-            "version": self.version,
-            "frames": self.frames,
-            "detections": self.detections,
-            "batches": self._batches,
-            "born": self._born,
-            "dimension": self._dimension,
-            "aliases": self.aliases,
-            "dirty": sorted(self._dirty),
-            "objects": [_plain(o) for o in objects],
-        }
-        out = io.BytesIO()
-        text = json.dumps(head, separators=(",", ":")).encode()
-        out.write(len(text).to_bytes(8, "little") + text)
-        for o in objects:
-            for array in (o.box, o.feature_sum, o.cloud.keys, o.cloud.counts, o.cloud.sums):
-                out.write(np.ascontiguousarray(array).tobytes())
-        return out.getvalue()
+    def segment(self, since: int = 0) -> bytes:
+        """What changed above version `since`, as bytes, the same for the same state; from 0, everything.
+
+        Segments come in order: what went at or below `since` is not told again.
+        """
+        self.table.gone = [(version, name) for version, name in self.table.gone if version > since]
+        records = [r for r in self.table if r.touched > since or not since]
+        return write_segment(self.table, self._head(since), records)
 
     @classmethod
-    def restore(cls, data: bytes, params: MapParams | None = None) -> ObjectMap:
-        """The map that `snapshot` wrote; InvalidInput for another format, Corrupt where bytes are missing."""
-        size = int.from_bytes(data[:8], "little")
-        try:
-            head = json.loads(data[8 : 8 + size])
-        except ValueError as error:
-            raise Corrupt("map snapshot: its head does not parse") from error
-        if head["format"] != SNAPSHOT_FORMAT:
-            raise InvalidInput(
-                f"map snapshot of format {head['format']}: this version reads format {SNAPSHOT_FORMAT}"
-            )
-        restored = cls(params)
-        restored.version, restored.frames, restored.detections = (
-            head["version"],
-            head["frames"],
-            head["detections"],
-        )
-        restored._batches, restored._born, restored._dimension = (
-            head["batches"],
-            head["born"],
-            head["dimension"],
-        )
-        restored.aliases, restored._dirty = head["aliases"], set(head["dirty"])
-        arrays = _arrays(data, 8 + size, head["objects"], head["dimension"] or 0)
-        for plain, (box, feature_sum, cloud) in zip(head["objects"], arrays, strict=True):
-            best_box2 = Box2(*plain.pop("best_box2"))
-            plain.pop("voxels")
-            restored._objects[plain["object_id"]] = _Object(
-                cloud=cloud, box=box, feature_sum=feature_sum, best_box2=best_box2, **plain
-            )
+    def restore(cls, segments: Sequence[bytes], params: MapParams | None = None) -> ObjectMap:
+        """The map that segments, in order, wrote down; its own settings unless others are given.
+
+        InvalidInput for another format, Corrupt where bytes are missing.
+        """
+        head, table = read_segments(segments)
+        restored = cls(params or head.params)
+        restored.version, restored.frames, restored.detections = head.version, head.frames, head.detections
+        restored.batches, restored.upkept_batches = head.batches, head.upkept_batches
+        restored.table = table
         return restored
 
+    def _begin(self) -> Changes:
+        self.version += 1
+        self.table.changes = Changes(self.version)
+        return self.table.changes
+
+    def _head(self, since: int) -> Head:
+        table = self.table
+        gone = sorted(name for version, name in table.gone if version > since) if since else []
+        aliases = {name: table.aliases[name] for name in gone if name in table.aliases}
+        return Head(
+            since=since,
+            version=self.version,
+            frames=self.frames,
+            detections=self.detections,
+            batches=self.batches,
+            upkept_batches=self.upkept_batches,
+            born=table.born,
+            dimension=table.dimension,
+            aliases=aliases if since else dict(sorted(table.aliases.items())),
+            gone=gone,
+            dirty=sorted(table.dirty),
+            params=self.params,
+        )
+
     def _check(self, batch: DetectionBatch) -> None:
-        dimension = self._dimension
+        dimension = self.table.dimension
         for d in batch.detections:
             dimension = len(d.feature) if dimension is None else dimension
             if len(d.feature) != dimension or dimension == 0:
@@ -229,241 +242,127 @@ class ObjectMap:
                     f"detection {d.detection_id}: "
                     f"expected a feature of {dimension or 'some'} numbers like the map's, got {len(d.feature)}"
                 )
-            if not all(np.isfinite(array).all() for array in (d.feature, d.box, d.points)):
+            if not all(np.isfinite(array).all() for array in (d.feature, d.second_feature, d.box, d.points)):
                 raise InvalidInput(f"detection {d.detection_id}: expected finite features, box and points")
             if not len(d.points) or len(d.points) != len(d.colors):
                 raise InvalidInput(
                     f"detection {d.detection_id}: expected points with a colour each, "
                     f"got {len(d.points)} points and {len(d.colors)} colours"
                 )
-        self._dimension = dimension
 
-    def _fuse_batch(self, batch: DetectionBatch) -> tuple[set[str], set[str]]:
-        objects = list(self._objects.values())
-        detections = batch.detections
-        if not detections:
-            return set(), set()
-        assigned = associate(
-            Instances(
-                np.stack([d.box for d in detections]),
-                np.stack([d.feature for d in detections]),
-                [d.label for d in detections],
-                [d.points for d in detections],
-            ),
-            Instances(
-                np.array([o.box for o in objects]).reshape(-1, 6),
-                np.array([o.feature for o in objects], np.float32).reshape(-1, self._dimension or 0),
-                [o.label for o in objects],
-                [o.cloud.points for o in objects] if self._compares_clouds else (),
-            ),
-            self.params.association,
+    def _associated(self, detections: Sequence[Detection]) -> list[ObjectRecord | None]:
+        """The object that each detection joins, None where it is a new one's first."""
+        params = self.params.association
+        seen = Instances(
+            np.stack([d.box for d in detections]),
+            np.stack([d.feature for d in detections]),
+            [d.label for d in detections],
+            [d.points for d in detections],
         )
-        created, updated = set(), set()
-        for detection, j in zip(detections, assigned, strict=True):
-            if j == NEW:
-                created.add(self._create(detection, batch))
+        records = list(self.table) if needs_all(params) else self.table.near_any(seen.boxes)
+        if not records:
+            return [None] * len(detections)
+        objects = self.table.instances(records, clouds=params.spatial is Spatial.OVERLAP)
+        return [None if j == NEW else records[j] for j in associate(seen, objects, params).tolist()]
+
+    def _fuse(self, batch: DetectionBatch, joined: Sequence[ObjectRecord | None]) -> set[str]:
+        """S_j += w_k f_k; Omega_j += w_k; C_j gains the label; voxel sums add (Eq. 4). Ids of what was seen."""
+        table, k, frame = self.table, batch.intrinsics, frame_number(batch.frame_id)
+        clouds = clouds_of(
+            [d.points for d in batch.detections], [d.colors for d in batch.detections], self.params.voxel
+        )
+        weights = [fusion_weight(d.box2, k.width, k.height, self.params.fusion) for d in batch.detections]
+        seen = []
+        for detection, record, cloud, weight in zip(batch.detections, joined, clouds, weights, strict=True):
+            weighted = weight * detection.feature.astype(np.float64)
+            second = weight * detection.second_feature.astype(np.float64)
+            if record is None:
+                record = ObjectRecord(
+                    object_id=table.new_id(),
+                    cloud=cloud,
+                    view_weight=weight,
+                    label_counts={detection.label: 1},
+                    observations=1,
+                    frames=1,
+                    seen_by=(frame,),
+                    first_seen_ns=batch.timestamp_ns,
+                    last_seen_ns=batch.timestamp_ns,
+                    best_weight=weight,
+                    best_frame_id=batch.frame_id,
+                    best_box2=detection.box2,
+                    last_batch=self.batches,
+                    second_sum=second,
+                )
+                table.add(record, weighted)
             else:
-                updated.add(self._merge_detection(objects[j], detection, batch))
-        self._dirty |= created | updated
-        return created, updated
+                table.add_feature(record, weighted)
+                record.second_sum = added(record.second_sum, second)
+                record.view_weight += weight
+                record.observations += 1
+                record.frames += frame not in record.seen_by
+                record.seen_by = remembered((*record.seen_by, frame))
+                record.first_seen_ns = min(record.first_seen_ns, batch.timestamp_ns)
+                record.last_seen_ns = max(record.last_seen_ns, batch.timestamp_ns)
+                record.last_batch = self.batches
+                if weight > record.best_weight:
+                    record.best_weight, record.best_frame_id = weight, batch.frame_id
+                    record.best_box2 = detection.box2
+                table.count_label(record, detection.label)
+                if (own := own_part(table, record, cloud)) is not None:
+                    table.set_cloud(record, record.cloud.merged(own), detection.box)
+            seen.append(record.object_id)
+        return set(seen)
 
-    @property
-    def _compares_clouds(self) -> bool:
-        return self.params.association.spatial is Spatial.OVERLAP
+    def _unsettled(self) -> list[ObjectRecord]:
+        """What changed noticeably since upkeep last looked at it, in order of birth."""
+        records = [r for name in self.table.dirty if (r := self.table.get(name)) is not None]
+        return sorted((r for r in records if not self._is_settled(r)), key=lambda r: r.birth)
 
-    def _create(self, detection: Detection, batch: DetectionBatch) -> str:
-        weight = fusion_weight(
-            detection.box2, batch.intrinsics.width, batch.intrinsics.height, self.params.fusion
-        )
-        cloud = VoxelCloud.of(detection.points, detection.colors, self.params.voxel)
-        self._born += 1
-        object_id = f"o{self._born:06d}"
-        self._objects[object_id] = _Object(
-            object_id=object_id,
-            cloud=cloud,
-            box=cloud.box,
-            feature_sum=weight * detection.feature.astype(np.float64),
-            view_weight=weight,
-            label_counts={detection.label: 1},
-            observations=1,
-            frames=1,
-            last_frame_id=batch.frame_id,
-            first_seen_ns=batch.timestamp_ns,
-            last_seen_ns=batch.timestamp_ns,
-            best_weight=weight,
-            best_frame_id=batch.frame_id,
-            best_box2=detection.box2,
-            last_batch=self._batches,
-            version=self.version,
-        )
-        return object_id
-
-    def _merge_detection(self, o: _Object, detection: Detection, batch: DetectionBatch) -> str:
-        """S_j += w_k f_k; Omega_j += w_k; C_j gains the label; voxel sums add (Eq. 4, SPEC 2.4)."""
-        weight = fusion_weight(
-            detection.box2, batch.intrinsics.width, batch.intrinsics.height, self.params.fusion
-        )
-        o.feature_sum = o.feature_sum + weight * detection.feature.astype(np.float64)
-        o.view_weight += weight
-        o.label_counts[detection.label] = o.label_counts.get(detection.label, 0) + 1
-        o.cloud = o.cloud.merged(VoxelCloud.of(detection.points, detection.colors, self.params.voxel))
-        o.box = o.cloud.box
-        o.observations += 1
-        o.frames += batch.frame_id != o.last_frame_id
-        o.last_frame_id = batch.frame_id
-        o.first_seen_ns = min(o.first_seen_ns, batch.timestamp_ns)
-        o.last_seen_ns = max(o.last_seen_ns, batch.timestamp_ns)
-        o.last_batch = self._batches
-        if weight > o.best_weight:
-            o.best_weight, o.best_frame_id, o.best_box2 = weight, batch.frame_id, detection.box2
-        o.refresh()
-        return o.object_id
-
-    def _denoise(self) -> set[str]:
-        """Clears clutter off changed objects; returns the ids of those that lost voxels."""
-        thinner = set()
-        for object_id in sorted(self._dirty & self._objects.keys()):
-            o = self._objects[object_id]
-            cloud = denoised(o.cloud, self.params.upkeep)
-            if len(cloud) < len(o.cloud):
-                thinner.add(object_id)
-                o.cloud, o.box = cloud, cloud.box
-        return thinner
-
-    def _merge_duplicates(self, changed: set[str]) -> dict[str, str]:
-        """Changed objects, oldest first, join those that are the same thing; the one seen in more frames stays."""
-        aliases: dict[str, str] = {}
-        for object_id in sorted(changed):
-            while object_id in self._objects:
-                twin = self._twin_of(self._objects[object_id])
-                if twin is None:
-                    break
-                keep, gone = sorted((object_id, twin), key=self._seniority)
-                self._absorb(self._objects[keep], self._objects.pop(gone))
-                aliases[gone] = keep
-                self._dirty.add(keep)
-                object_id = keep
-        self.aliases.update(aliases)
-        return aliases
-
-    def _seniority(self, object_id: str) -> tuple[int, str]:
-        return (-self._objects[object_id].frames, object_id)
-
-    def _twin_of(self, o: _Object) -> str | None:
-        """The first object that is the same thing: alike, and in the same place."""
-        upkeep = self.params.upkeep
-        others = [p for p in self._objects.values() if p is not o]
-        if not others:
-            return None
-        slack = np.array([-upkeep.reach] * 3 + [upkeep.reach] * 3)
-        near = touching(o.box + slack, np.stack([p.box for p in others]))
-        for p in (p for p, close in zip(others, near, strict=True) if close):
-            alike = float(o.feature @ p.feature) > upkeep.merge_similarity
-            if alike and self._same_place(o, p):
-                return p.object_id
-        return None
-
-    def _same_place(self, o: _Object, p: _Object) -> bool:
-        """Where labels differ and count, only a box that is much the same will do."""
-        upkeep = self.params.upkeep
-        if pairwise_iou(o.box[None], p.box[None])[0, 0] > upkeep.merge_iou:
-            return True
-        if o.label != p.label and upkeep.same_label:
+    def _is_settled(self, record: ObjectRecord) -> bool:
+        if record.settled is None:
             return False
-        if inside(o.box, p.box, self.params.voxel / 2) > upkeep.merge_inside:
-            return True
-        return overlap(o.cloud, p.cloud, upkeep.reach) > upkeep.merge_overlap
+        voxels, box = record.settled
+        grown = abs(len(record.cloud) - voxels) > _SETTLED_SHARE * voxels
+        return not grown and bool((np.abs(self.table.box(record) - box) <= _SETTLED_METRES).all())
 
-    def _absorb(self, keep: _Object, gone: _Object) -> None:
-        """The accumulators of both objects added: counts, S, Omega, voxel sums."""
-        keep.feature_sum = keep.feature_sum + gone.feature_sum
-        keep.view_weight += gone.view_weight
-        for label, count in gone.label_counts.items():
-            keep.label_counts[label] = keep.label_counts.get(label, 0) + count
-        keep.cloud = keep.cloud.merged(gone.cloud)
-        keep.box = keep.cloud.box
-        keep.observations += gone.observations
-        keep.frames += gone.frames
-        keep.first_seen_ns = min(keep.first_seen_ns, gone.first_seen_ns)
-        keep.last_seen_ns = max(keep.last_seen_ns, gone.last_seen_ns)
-        keep.last_batch = max(keep.last_batch, gone.last_batch)
-        if gone.best_weight > keep.best_weight:
-            keep.best_weight, keep.best_frame_id, keep.best_box2 = (
-                gone.best_weight,
-                gone.best_frame_id,
-                gone.best_box2,
-            )
-        keep.refresh()
+    def _denoise(self, record: ObjectRecord) -> None:
+        cloud = denoised(record.cloud, self.params.upkeep)
+        if len(cloud) < len(record.cloud):
+            self.table.set_cloud(record, cloud)
 
-    def _forget(self) -> list[str]:
+    def _forget_noise(self) -> None:
         """Unconfirmed objects that were not seen again for a while were noise."""
-        upkeep = self.params.upkeep
-        noise = [
-            o.object_id
-            for o in self._objects.values()
-            if o.frames < upkeep.confirm_frames and self._batches - o.last_batch >= upkeep.forget_after
-        ]
-        for object_id in noise:
-            del self._objects[object_id]
-        return noise
+        for record in self.table.tentative(self._confirmed):
+            if self._is_noise(record):
+                self.table.drop(record)
 
-    def _shown(self, include_unconfirmed: bool) -> Iterator[_Object]:
-        for o in self._objects.values():
-            if include_unconfirmed or o.frames >= self.params.upkeep.confirm_frames:
-                yield o
+    def _is_noise(self, record: ObjectRecord) -> bool:
+        return not record.deleted and self.batches - record.last_batch >= self.params.upkeep.forget_after
 
+    def _confirmed(self, record: ObjectRecord) -> bool:
+        return record.frames >= self.params.upkeep.confirm_frames or record.pinned or bool(record.given_label)
 
-def _as_read(o: _Object) -> MapObject:
-    mean = o.cloud.mean
-    return MapObject(
-        object_id=o.object_id,
-        label=o.label,
-        label_counts=dict(o.label_counts),
-        centroid=mean[:3],
-        box=o.box,
-        feature=o.feature,
-        view_weight=o.view_weight,
-        observations=o.observations,
-        frames=o.frames,
-        first_seen_ns=o.first_seen_ns,
-        last_seen_ns=o.last_seen_ns,
-        voxels=len(o.cloud),
-        mean_color=mean[3:],
-        best_frame_id=o.best_frame_id,
-        best_box2=o.best_box2,
-        version=o.version,
-    )
+    def _record(self, object_id: str) -> ObjectRecord | None:
+        record = self.table.get(self.table.resolve(object_id))
+        return record if record and not record.deleted else None
+
+    def _as_read(self, record: ObjectRecord) -> MapObject:
+        if record.read is None:
+            record.read = self.table.read(record)
+        return record.read
 
 
-_ARRAYS = ("cloud", "box", "feature_sum", "label", "feature")
+def map_of(batches: Iterable[DetectionBatch], params: MapParams | None = None) -> ObjectMap:
+    """The map of a whole recording: upkeep whenever it is due, and at the end."""
+    made = ObjectMap(params)
+    for batch in batches:
+        made.integrate(batch)
+        if made.upkeep_due:
+            made.upkeep()
+    made.upkeep()
+    return made
 
 
-def _plain(o: _Object) -> dict[str, object]:
-    plain = {f.name: getattr(o, f.name) for f in dataclasses.fields(o) if f.name not in _ARRAYS}
-    return {
-        **plain,
-        "best_box2": [o.best_box2.x0, o.best_box2.y0, o.best_box2.x1, o.best_box2.y1],
-        "voxels": len(o.cloud),
-    }
-
-
-def _arrays(
-    data: bytes, at: int, objects: list[dict[str, int]], dimension: int
-) -> Iterator[tuple[F64, F64, VoxelCloud]]:
-    def take(count: int) -> memoryview:
-        nonlocal at
-        if at + 8 * count > len(data):
-            raise Corrupt(f"map snapshot: expected at least {at + 8 * count} bytes, got {len(data)}")
-        at += 8 * count
-        return memoryview(data)[at - 8 * count : at]
-
-    def floats(count: int) -> F64:
-        return np.frombuffer(take(count), np.float64).copy()
-
-    def integers(count: int) -> I64:
-        return np.frombuffer(take(count), np.int64).copy()
-
-    for plain in objects:
-        v = plain["voxels"]
-        box, feature_sum = floats(6), floats(dimension)
-        yield box, feature_sum, VoxelCloud(integers(v), integers(v), floats(6 * v).reshape(v, 6))
+def frame_number(frame_id: str) -> int:
+    """A number for a frame: 63 bits of its id's hash."""
+    return int.from_bytes(hashlib.blake2b(frame_id.encode(), digest_size=8).digest(), "little") >> 1

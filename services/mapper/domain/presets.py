@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from services.mapper.domain.association import AssociationParams
 from services.mapper.domain.fusion import FusionParams, Weighting
-from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.params import MapParams
+from services.mapper.domain.presence import PresenceParams
 from services.mapper.domain.spatial import Spatial
 from services.mapper.domain.upkeep import UpkeepParams
 
@@ -20,12 +21,13 @@ _CONCEPTGRAPHS = MapParams(
         merge_overlap=0.7,
         merge_inside=float("inf"),
         merge_similarity=0.7,
-        merge_iou=float("inf"),
+        merge_mutual=float("inf"),
         reach=0.025,
         confirm_frames=3,
         cluster_radius=0.1,
         cluster_share=1.0,
     ),
+    presence=PresenceParams(departed_share=float("inf"), small_share=float("inf")),
 )
 _IPSM = replace(
     _CONCEPTGRAPHS,

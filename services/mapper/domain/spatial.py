@@ -8,8 +8,8 @@ from enum import StrEnum
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ovip.scene.boxes import pairwise_giou, pairwise_iou, touching
-from ovip.scene.types import F32, F64
+from ovip.scene.boxes import pair_giou, pair_iou, pair_touching
+from ovip.scene.types import F32, F64, I64
 
 REACH = 0.025
 """Metres within which a detection's point lies on an object (ConceptGraphs: one voxel)."""
@@ -24,20 +24,26 @@ class Spatial(StrEnum):
 
 
 def spatial_scores(
-    kind: Spatial, boxes: F64, object_boxes: F64, clouds: Sequence[F32], object_clouds: Sequence[F32]
+    kind: Spatial,
+    boxes: F64,
+    object_boxes: F64,
+    i: I64,
+    j: I64,
+    clouds: Sequence[F32] = (),
+    object_clouds: Sequence[F32] = (),
 ) -> F64:
-    """Scores `(M, N)` of boxes `(M, 6)` against `(N, 6)`; at most 0 where two boxes share no volume.
+    """Scores `(P,)` of pairs of boxes `(P, 6)` and `(P, 6)`; at most 0 where two boxes share no volume.
 
-    clouds: `(P, 3)` points of each box's owner, used by `overlap` only.
+    clouds[i[p]], object_clouds[j[p]]: `(N, 3)` points of pair p's owners, used by `overlap` only.
     """
     if kind is Spatial.IOU:
-        return pairwise_iou(boxes, object_boxes)
+        return pair_iou(boxes, object_boxes)
     if kind is Spatial.GIOU:
-        return np.minimum(pairwise_giou(boxes, object_boxes), _zero_apart(boxes, object_boxes))
-    scores = np.zeros((len(boxes), len(object_boxes)))
-    for i, box in enumerate(boxes):
-        for j in np.flatnonzero(touching(box, object_boxes)):
-            scores[i, j] = containment(clouds[i], object_clouds[int(j)])
+        together = pair_touching(boxes, object_boxes)
+        return np.minimum(pair_giou(boxes, object_boxes), np.where(together, np.inf, 0.0))
+    scores = np.zeros(len(boxes))
+    for p in np.flatnonzero(pair_touching(boxes, object_boxes)):
+        scores[p] = containment(clouds[int(i[p])], object_clouds[int(j[p])])
     return scores
 
 
@@ -52,9 +58,3 @@ def containment(points: F32, others: F32) -> float:
         return 0.0
     distance, _ = cKDTree(near).query(points, distance_upper_bound=REACH)
     return float(np.isfinite(distance).mean())
-
-
-def _zero_apart(boxes: F64, object_boxes: F64) -> F64:
-    """Infinite where boxes share a volume, else 0: the bound that pruning relies on."""
-    together = np.array([touching(box, object_boxes) for box in boxes]).reshape(len(boxes), len(object_boxes))
-    return np.where(together, np.inf, 0.0)

@@ -36,6 +36,13 @@ def _score(box: F64, feature: F32, label: str, object_box: F64, params: Associat
     )
 
 
+def _only(instances: Instances, i: int) -> Instances:
+    part = slice(i, i + 1)
+    return Instances(
+        instances.boxes[part], instances.features[part], instances.labels[part], instances.clouds[part]
+    )
+
+
 # Eq. 2
 
 
@@ -183,7 +190,7 @@ def test_each_detection_is_assigned_as_if_it_were_alone_in_its_frame(
     params = AssociationParams(alpha, 0.5, tau, spatial)
     together = associate(detections, objects, params)
     for i in range(len(together)):
-        assert associate(detections.at([i]), objects, params).tolist() == [together[i]]
+        assert associate(_only(detections, i), objects, params).tolist() == [together[i]]
 
 
 def test_where_features_alone_can_reach_tau_a_distant_object_is_joined() -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from services.mapper.domain.association import AssociationParams
 from services.mapper.domain.fusion import FusionParams, Weighting
-from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.params import MapParams
 from services.mapper.domain.presets import PRESETS
 from services.mapper.domain.spatial import Spatial
 

@@ -9,7 +9,7 @@ import pytest
 
 from ovip.scene.types import F32, F64
 from services.mapper.domain.cloud import VoxelCloud
-from services.mapper.domain.upkeep import UpkeepParams, denoised, inside, overlap
+from services.mapper.domain.upkeep import UpkeepParams, denoised, nesting, overlap
 from tests.builders import block
 
 PARAMS = UpkeepParams()
@@ -69,28 +69,28 @@ def test_clouds_apart_do_not_overlap() -> None:
 
 
 @pytest.mark.parametrize(
-    ("a", "b", "share"),
+    ("a", "b", "share", "ratio"),
     [
-        ((0, 0, 0, 1, 1, 1), (0, 0, 0, 2, 2, 2), 1.0),
-        ((0.5, 0, 0, 1.5, 1, 1), (0, 0, 0, 1, 4, 4), 0.5),
-        ((3, 3, 3, 4, 4, 4), (0, 0, 0, 1, 1, 1), 0.0),
+        ((0, 0, 0, 1, 1, 1), (0, 0, 0, 2, 2, 2), 1.0, 1 / 8),
+        ((0.5, 0, 0, 1.5, 1, 1), (0, 0, 0, 1, 4, 4), 0.5, 1 / 16),
+        ((3, 3, 3, 4, 4, 4), (0, 0, 0, 1, 1, 1), 0.0, 1.0),
     ],
 )
-def test_inside_is_the_share_of_the_smaller_box_by_hand(
-    a: Sequence[float], b: Sequence[float], share: float
+def test_nesting_is_the_share_of_the_smaller_box_and_its_part_of_the_larger_by_hand(
+    a: Sequence[float], b: Sequence[float], share: float, ratio: float
 ) -> None:
     one, other = _box(a), _box(b)
 
-    assert inside(one, other, 0.0) == pytest.approx(share)
-    assert inside(other, one, 0.0) == pytest.approx(share)
+    assert nesting(one, other, 0.0) == pytest.approx((share, ratio))
+    assert nesting(other, one, 0.0) == pytest.approx((share, ratio))
 
 
 def test_flat_boxes_have_the_thickness_of_the_slack() -> None:
     """A wall seen face on has no depth; half a voxel on each side gives it one."""
     wall, part = _box((0, 0, 0, 1, 1, 0)), _box((0.2, 0.2, 0, 0.4, 0.4, 0))
 
-    assert inside(wall, part, 0.01) == pytest.approx(1.0)
-    assert inside(wall, part + np.array([0, 0, 0.5, 0, 0, 0.5]), 0.01) == 0.0
+    assert nesting(wall, part, 0.01)[0] == pytest.approx(1.0)
+    assert nesting(wall, part + np.array([0, 0, 0.5, 0, 0, 0.5]), 0.01)[0] == 0.0
 
 
 def _box(corners: Sequence[float]) -> F64:

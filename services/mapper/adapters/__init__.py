@@ -1,0 +1,1 @@
+"""What stands behind the mapper's seams."""
