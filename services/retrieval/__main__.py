@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import secrets
 import time
-import uuid
 from collections.abc import AsyncIterator
 
 from ovip.clients import MapperClient, PerceptionClient, RegionsClient, VlmClient, connect
+from ovip.ids import uuid7
 from ovip.serving import grpc_server, run_alone
 from ovip.store import Store
 from services.retrieval.adapters.crops import OpenCvCrops
@@ -73,15 +72,7 @@ def build(settings: Settings, store: Store, sources: Sources, vlm: VlmClient) ->
         history=FrameHistory(sources.frames),
     )
     searches = StoredSearches(store, settings.retrieval_keep_answers_s)
-    return Retrieval(desk, searches, time.perf_counter, _uuid7)
-
-
-def _uuid7() -> str:
-    """A sortable id (RFC 9562, version 7): milliseconds since the epoch, then random bits."""
-    value = (time.time_ns() // 1_000_000) << 80 | secrets.randbits(80)
-    value = value & ~(0xF << 76) | 0x7 << 76
-    value = value & ~(0x3 << 62) | 0x2 << 62
-    return str(uuid.UUID(int=value))
+    return Retrieval(desk, searches, time.perf_counter, uuid7)
 
 
 if __name__ == "__main__":

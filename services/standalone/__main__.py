@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 
 from pydantic import ValidationError
@@ -16,9 +17,13 @@ from ovip.telemetry import configure_logging
 from services.standalone.config import Settings
 from services.standalone.stack import running_stack
 
+_THREADS = 16
+
 
 async def run(settings: Settings) -> None:
     """Says where it is as one JSON line on standard output once everything answers."""
+    # whoever waits for the disk must not keep others from the processor
+    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(_THREADS, "work"))
     async with running_stack(settings) as stack:
         print(json.dumps({**asdict(stack), "dashboard": stack.dashboard}), flush=True)
         await until_told()

@@ -3,83 +3,38 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
 
-from ovip.clients import MapperClient, connect
-from ovip.codec import encode_detection_batch
+from ovip.clients import MapperClient
 from ovip.errors import InvalidInput, NotFound
-from ovip.scene.types import DetectionBatch, MapDelta, SceneMap
-from ovip.store import Append, Store
-from services.mapper.__main__ import serve
-from services.mapper.config import Settings
+from ovip.scene.types import DetectionBatch, MapDelta, StepKind
+from ovip.store import Store
 from services.mapper.domain.object_map import ObjectMap
-from services.mapper.service import STAGE, Mapper
-from tests.builders import axis, batch, detection, random_run
+from services.mapper.service import STAGE
+from tests.builders import axis, batch, detection
+from tests.integration.mappers import (
+    RUN,
+    SCENE,
+    SETTINGS,
+    a_mapper,
+    expected,
+    made_of,
+    map_at,
+    mapper_on,
+    versions_in,
+    write,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
-SCENE = "kitchen"
-SETTINGS = Settings(
-    _env_file=None, mapper_port=0, api_key=None, snapshot_every=4, upkeep_every=3, confirm_frames=2
-)
-RUN = random_run(7, 20)
-
-
-async def write(store: Store, batches: Sequence[DetectionBatch], scene: str = SCENE) -> str:
-    """What perception does: appends batches to the detections log; returns the id of the last."""
-    await store.add_scene(scene)
-    lease = await store.acquire_lease(scene, "perception", "test", 30)
-    assert lease is not None
-    at = int((await store.cursor(scene, "perception")).partition("-")[0])
-    newest = ""
-    for n, one in enumerate(batches, at + 1):
-        ref = await store.blobs.put(encode_detection_batch(one))
-        fields = {"frame_id": one.frame_id, "batch": ref, "kind": "frame"}
-        newest = (await store.commit(lease, f"{n}-0", [Append("detections", fields)])).ids[0]
-    return newest
-
-
-@contextlib.asynccontextmanager
-async def mapper_on(store: Store, settings: Settings = SETTINGS) -> AsyncIterator[MapperClient]:
-    """A mapper that serves and follows; yields a client of it."""
-    async with serve(settings, store) as port:
-        channel = connect(f"127.0.0.1:{port}")
-        try:
-            yield MapperClient(channel)
-        finally:
-            await channel.close()
-
-
-async def map_at(
-    mapper: MapperClient, log_id: str, scene: str = SCENE, unconfirmed: bool = False
-) -> SceneMap:
-    """The map once it has seen a log entry."""
-    async with asyncio.timeout(20):
-        while True:
-            current = await mapper.get_map(scene, unconfirmed)
-            if current.applied_log_id == log_id:
-                return current
-            await asyncio.sleep(0.02)
-
-
-def expected(batches: Sequence[DetectionBatch]) -> ObjectMap:
-    """The map that the batches make, by the domain alone."""
-    made = ObjectMap(SETTINGS.map_params())
-    for one in batches:
-        made.integrate(one)
-    return made
-
-
-async def versions_in(store: Store, scene: str = SCENE) -> list[int]:
-    return [int(e.fields["version"]) for e in await store.read(scene, "map", count=10_000)]
+VERSIONS = [delta.version for delta in made_of(RUN)[1]]
 
 
 # One log, one map
@@ -95,7 +50,7 @@ async def test_the_log_becomes_the_map_that_the_domain_makes_of_it(store: Store)
     assert seen.state_hash == made.state_hash()
     assert (seen.version, seen.frames, seen.detections) == (made.version, made.frames, made.detections)
     assert [o.object_id for o in seen.objects] == [o.object_id for o in made.objects()]
-    assert await versions_in(store) == list(range(1, len(RUN) + 1))
+    assert await versions_in(store) == VERSIONS
 
 
 async def test_a_second_reader_makes_the_same_map_of_the_same_log(store: Store) -> None:
@@ -103,7 +58,7 @@ async def test_a_second_reader_makes_the_same_map_of_the_same_log(store: Store) 
     async with mapper_on(store) as mapper:
         await map_at(mapper, newest)
 
-    reader = Mapper(store, SETTINGS.map_params(), SETTINGS.snapshot_every)
+    reader = a_mapper(store)
 
     assert (await reader.get_map(SCENE, False)).state_hash == expected(RUN).state_hash()
 
@@ -153,15 +108,16 @@ async def test_a_restarted_mapper_goes_on_from_its_snapshot_to_the_same_map(stor
     middle = await write(store, RUN[:10])
     async with mapper_on(store) as mapper:
         await map_at(mapper, middle)
-    pointer = json.loads((await store.values(SCENE, STAGE, ["snapshot"]))["snapshot"])
-    assert ObjectMap.restore(await store.blobs.get(pointer["blob"])).version == 8  # the last multiple of 4
+    (snapshot,) = await store.newest(SCENE, "snapshots")
+    segments = [await store.blobs.get(ref) for ref in json.loads(snapshot.fields["segments"])]
+    assert ObjectMap.restore(segments).version == int(snapshot.fields["version"]) >= 8
 
     newest = await write(store, RUN[10:])
     async with mapper_on(store) as mapper:
         seen = await map_at(mapper, newest)
 
     assert seen.state_hash == expected(RUN).state_hash()
-    assert await versions_in(store) == list(range(1, len(RUN) + 1))
+    assert await versions_in(store) == VERSIONS
 
 
 async def test_a_writer_that_loses_its_lease_midway_is_followed_without_a_gap_or_a_repeat(
@@ -181,7 +137,7 @@ async def test_a_writer_that_loses_its_lease_midway_is_followed_without_a_gap_or
         assert holder is not None
 
     assert one.state_hash == other.state_hash == expected(RUN).state_hash()
-    assert await versions_in(store) == list(range(1, len(RUN) + 1))
+    assert await versions_in(store) == VERSIONS
 
 
 async def test_a_writer_stopped_midway_is_followed_by_the_other(store: Store) -> None:
@@ -194,7 +150,7 @@ async def test_a_writer_stopped_midway_is_followed_by_the_other(store: Store) ->
         seen = await map_at(second, newest)
 
     assert seen.state_hash == expected(RUN).state_hash()
-    assert await versions_in(store) == list(range(1, len(RUN) + 1))
+    assert await versions_in(store) == VERSIONS
 
 
 async def test_a_caller_that_hangs_up_while_the_map_is_read_back_leaves_it_whole(
@@ -203,7 +159,7 @@ async def test_a_caller_that_hangs_up_while_the_map_is_read_back_leaves_it_whole
     await write(store, RUN)
     async with mapper_on(store, SETTINGS.model_copy(update={"snapshot_every": 1000})) as mapper:
         await map_at(mapper, (await store.newest(SCENE, "detections"))[0].id)
-    reader = Mapper(store, SETTINGS.map_params(), 1000)
+    reader = a_mapper(store)
     begun, integrate = threading.Semaphore(0), ObjectMap.integrate
 
     def slowly(self: ObjectMap, one: DetectionBatch) -> MapDelta:
@@ -230,9 +186,9 @@ async def test_a_batch_that_cannot_be_the_maps_does_not_block_the_scene(store: S
     async with mapper_on(store) as mapper:
         seen = await map_at(mapper, newest)
 
-    assert (seen.version, seen.frames, seen.detections) == (5, 5, 4)
+    assert (seen.frames, seen.detections) == (5, 4)
     assert [o.observations for o in seen.objects] == [4]
-    assert (await Mapper(store, SETTINGS.map_params(), 4).get_map(SCENE, False)).state_hash == seen.state_hash
+    assert (await a_mapper(store).get_map(SCENE, False)).state_hash == seen.state_hash
 
 
 async def test_scenes_do_not_wait_for_one_another(store: Store) -> None:
@@ -259,13 +215,13 @@ async def test_watching_yields_every_delta_in_order_old_ones_and_new(store: Stor
         async with asyncio.timeout(20):
             async for delta in mapper.watch(SCENE, 0):
                 deltas.append(delta)
-                if len(deltas) == 6:
+                if len(deltas) == len(made_of(RUN[:6])[1]):
                     await write(store, RUN[6:])
-                if len(deltas) == len(RUN):
+                if len(deltas) == len(VERSIONS):
                     break
 
-    made = ObjectMap(SETTINGS.map_params())
-    assert deltas == [made.integrate(one) for one in RUN]
+    assert deltas == made_of(RUN)[1]
+    assert [d.kind for d in deltas[:5]] == [StepKind.SETTINGS, *3 * [StepKind.FRAME], StepKind.UPKEEP]
 
 
 async def test_watching_starts_above_a_version(store: Store) -> None:
@@ -302,7 +258,7 @@ async def test_what_is_not_there_is_not_found_in_words(store: Store) -> None:
         await map_at(mapper, newest)
         with pytest.raises(NotFound, match="there is no scene 'attic'; known: kitchen"):
             await mapper.get_map("attic")
-        with pytest.raises(NotFound, match="object 'o000009' is not in scene kitchen at version 1"):
+        with pytest.raises(NotFound, match="object 'o000009' is not in scene kitchen at version 2"):
             await mapper.get_object(SCENE, "o000009")
         with pytest.raises(NotFound, match="object 'o000009'"):
             await mapper.get_points(SCENE, ["o000001", "o000009"])

@@ -258,9 +258,11 @@ async def test_a_frame_sent_again_is_durable_a_duplicate_and_changes_nothing(sto
         await robot.hello()
         for sequence in (1, 2, 1, 2):
             await robot.frame(painted(sequence, "cup"))
-        acks = await robot.acks(*("RECEIVED", "DURABLE") * 4)
+        acks = [(await robot.read()).ack for _ in range(8)]
 
-    assert [ack.duplicate for ack in acks[1::2]] == [False, False, True, True]
+    durable = [ack for ack in acks if ack.status == pb.Ack.STATUS_DURABLE]
+    assert [ack.sequence for ack in durable] == [1, 2, 1, 2]
+    assert [ack.duplicate for ack in durable] == [False, False, True, True]
     assert await store.length(SCENE, "frames") == 2
 
 
@@ -269,10 +271,32 @@ async def test_a_sequence_that_was_passed_over_is_rejected_not_called_durable(st
         await robot.hello()
         await robot.frame(painted(5, "cup"))
         await robot.frame(painted(3, "cup"))
-        acks = await robot.acks("RECEIVED", "DURABLE", "RECEIVED", "REJECTED")
+        acks = [(await robot.read()).ack for _ in range(4)]
 
-    assert acks[-1].reason == "sequence: expected above 5, the session's last, got 3"
+    last = {ack.sequence: ack for ack in acks}
+    assert last[5].status == pb.Ack.STATUS_DURABLE
+    assert last[3].status == pb.Ack.STATUS_REJECTED
+    assert last[3].reason == "sequence: expected above 5, the session's last, got 3"
     assert await store.length(SCENE, "frames") == 1
+
+
+async def test_frames_taken_in_at_once_are_durable_in_order_whichever_of_them_is_rejected(
+    store: Store,
+) -> None:
+    frames = [painted(n, "cup") for n in range(1, 13)]
+    for n in (3, 4, 9):
+        frames[n] = dataclasses.replace(frames[n], rgb=frames[n].rgb[:50])
+    async with perception_on(store) as port, raw_stream(port) as robot:
+        await robot.hello()
+        for frame in frames:
+            await robot.frame(frame)
+        acks = [(await robot.read()).ack for _ in range(9 + 9 + 3)]
+
+    good = [n for n in range(1, 13) if n - 1 not in (3, 4, 9)]
+    assert [ack.sequence for ack in acks if ack.status == pb.Ack.STATUS_DURABLE] == good
+    assert {ack.sequence for ack in acks if ack.status == pb.Ack.STATUS_REJECTED} == {4, 5, 10}
+    entries = await store.read(SCENE, "frames")
+    assert [int(e.fields["frame_id"].decode().rpartition(".")[2]) for e in entries] == good
 
 
 async def test_playing_a_whole_recording_again_changes_nothing(store: Store) -> None:
@@ -623,9 +647,15 @@ async def test_a_map_grows_from_a_stream(store: Store) -> None:
 async def test_a_robot_that_detects_on_board_skips_the_models_and_the_gate(
     store: Store, models: PaintedModels
 ) -> None:
-    seen = (OutgoingDetection("Coffee Mugs", 0.8, Box2(20, 20, 60, 60), feature=(0.0,) * 7 + (2.0,)),)
+    mug = OutgoingDetection(
+        "Coffee Mugs",
+        0.8,
+        Box2(20, 20, 60, 60),
+        feature=(0.0,) * 7 + (2.0,),
+        second_feature=(3.0, 4.0),
+    )
     frame = dataclasses.replace(
-        painted(1, "cup"), rgb=png(np.full((72, 96, 3), 90, np.uint8)), detections=seen
+        painted(1, "cup"), rgb=png(np.full((72, 96, 3), 90, np.uint8)), detections=(mug,)
     )
     empty = dataclasses.replace(painted(2, "cup"), detections=())
     async with perception_on(store) as port:
@@ -635,6 +665,7 @@ async def test_a_robot_that_detects_on_board_skips_the_models_and_the_gate(
     one, other = await detections_in(store)
     assert [d.label for d in one.detections] == ["coffee mug"]
     assert one.detections[0].feature.tolist() == [0.0] * 7 + [1.0]
+    assert one.detections[0].second_feature == pytest.approx([0.6, 0.8])
     assert other.detections == ()
     assert status.detections == 1
     assert models.grounded == []

@@ -354,6 +354,104 @@ async def test_an_input_id_that_is_none_is_refused_in_words(store: Store) -> Non
         await store.commit(lease, "yesterday")
 
 
+async def test_a_step_of_two_inputs_moves_both_cursors_or_none(store: Store) -> None:
+    lease = await store.acquire_lease(SCENE, "mapper", "me", 10)
+    assert lease is not None
+
+    assert (await store.commit(lease, {"cursor": "7-0", "version": "1-0"}, [Append("map", {"v": 1})])).applied
+    assert (await store.commit(lease, {"edits": "3-0", "version": "2-0"}, [Append("map", {"v": 2})])).applied
+    again = await store.commit(lease, {"edits": "3-0", "version": "2-0"}, [Append("map", {"v": 2})])
+    with pytest.raises(Conflict, match="the step was made on an older state"):
+        await store.commit(
+            lease, {"cursor": "8-0", "version": "2-0"}, [Append("map", {"v": 9})], {"version": 9}
+        )
+
+    assert not again.applied
+    assert [e.fields["v"] for e in await store.read(SCENE, "map")] == [b"1", b"2"]
+    assert await store.cursors(SCENE, "mapper", ["cursor", "edits", "version", "never"]) == {
+        "cursor": "7-0",
+        "edits": "3-0",
+        "version": "2-0",
+        "never": "0-0",
+    }
+    assert await store.cursor(SCENE, "mapper", "edits") == "3-0"
+    assert await store.values(SCENE, "mapper", ["version"]) == {}
+
+
+async def test_an_entry_may_have_an_id_of_its_own_above_those_that_are_there(store: Store) -> None:
+    lease = await store.acquire_lease(SCENE, "mapper", "me", 10)
+    assert lease is not None
+
+    done = await store.commit(lease, "1-0", [Append("map", {"v": 1}, "1-0"), Append("map", {"v": 2}, "2-0")])
+    for wrong in ("2-0", "1-5"):
+        with pytest.raises(Unavailable, match="the store refused: .*is already at 2-0"):
+            await store.commit(
+                lease, "2-0", [Append("log", {"x": 1}), Append("map", {"v": 3}, wrong)], {"version": 3}
+            )
+    with pytest.raises(Unavailable, match="is already at 4-0"):
+        await store.commit(lease, "2-0", [Append("map", {"v": 4}, "4-0"), Append("map", {"v": 3}, "3-0")])
+
+    assert done.ids == ("1-0", "2-0")
+    assert [e.id for e in await store.read(SCENE, "map")] == ["1-0", "2-0"]
+    assert await store.length(SCENE, "log") == 0
+    assert await store.values(SCENE, "mapper", ["version"]) == {}
+    assert await store.cursor(SCENE, "mapper") == "1-0"
+
+
+# Reading parts of a log
+
+
+async def test_a_log_is_read_between_two_ids_and_from_an_id_backwards(store: Store) -> None:
+    lease = await store.acquire_lease(SCENE, "mapper", "me", 10)
+    assert lease is not None
+    ids = [f"{n}-0" for n in (1, 4, 5, 9, 10)]
+    await store.commit(lease, "1-0", [Append("map", {"v": 1}, at) for at in ids])
+
+    assert [e.id for e in await store.between(SCENE, "map", "1-0", "9-0")] == ["4-0", "5-0", "9-0"]
+    assert [e.id for e in await store.between(SCENE, "map", "0-0", "9-0", 2)] == ["1-0", "4-0"]
+    assert await store.between(SCENE, "map", "10-0", "10-0") == []
+    for at, expected in (("9-0", "9-0"), ("8-0", "5-0"), ("1000-0", "10-0")):
+        found = await store.at_or_before(SCENE, "map", at)
+        assert found is not None
+        assert found.id == expected
+    assert await store.at_or_before(SCENE, "map", "0-5") is None
+
+
+async def test_several_logs_are_waited_for_at_once(store: Store) -> None:
+    lease = await store.acquire_lease(SCENE, "mapper", "me", 10)
+    assert lease is not None
+    after = {"detections": "0-0", "edits": "0-0"}
+    assert await store.read_any(SCENE, after) == {"detections": [], "edits": []}
+
+    waiting = asyncio.create_task(store.read_any(SCENE, after, block_ms=10_000))
+    await asyncio.sleep(0.05)
+    await store.commit(lease, "1-0", [Append("edits", {"e": 1})])
+    async with asyncio.timeout(5):
+        found = await waiting
+
+    assert [e.fields for e in found["edits"]] == [{"e": b"1"}]
+    assert found["detections"] == []
+
+
+# Once a key
+
+
+async def test_an_entry_is_appended_once_a_key(store: Store) -> None:
+    first = await store.append_once(SCENE, "edits", "e1", {"label": "cup"})
+    again = await asyncio.gather(
+        *(store.append_once(SCENE, "edits", "e1", {"label": f"mug {n}"}) for n in range(8))
+    )
+    other = await store.append_once(SCENE, "edits", "e2", {"label": "cup"})
+
+    assert not first.duplicate
+    assert all(one.duplicate and one.id == first.id for one in again)
+    assert [e.id for e in await store.read(SCENE, "edits")] == [first.id, other.id]
+    found = await store.entry_of(SCENE, "edits", "e1")
+    assert found is not None
+    assert found.fields == {"label": b"cup"}
+    assert await store.entry_of(SCENE, "edits", "never") is None
+
+
 # Documents
 
 

@@ -91,6 +91,17 @@ class SceneDetail(Scene):
     floors: int
 
 
+class ObjectRelation(_Body):
+    kind: Literal["on", "in", "next_to", "attached_to"]
+    object_id: str = Field(description="the other object")
+    evidence: dict[str, float | None] = Field(description="what was measured, by name: metres or shares")
+
+
+class ObjectMove(_Body):
+    timestamp_ns: int
+    position: Point
+
+
 class MappedObject(_Body):
     id: str
     label: str
@@ -109,6 +120,16 @@ class MappedObject(_Body):
     frame_id: str | None = Field(description="the frame that saw it best")
     box2: Box2List | None = Field(description="where it is in that frame")
     version: int = Field(description="map version of its last change")
+    revision: int = Field(description="map version at which it was last born, moved, given up or edited")
+    presence: Literal["present", "moved_or_removed"] = Field(
+        description="moved_or_removed: later depth saw through the place where it was"
+    )
+    pinned: bool = Field(description="upkeep neither merges it away nor gives it up")
+    label_given: bool = Field(description="the label is an operator's")
+    relations: list[ObjectRelation]
+    moves: list[ObjectMove] = Field(
+        description="where it was before it was recognised elsewhere, oldest first"
+    )
 
 
 class ObjectPage(_Body):

@@ -111,7 +111,11 @@ class Flat:
         ]
         self.deltas.append(
             MapDelta(
-                self.version, self.records[-1].frame_id, (obj.object_id,), ("o-001",), (), {"o-900": "o-001"}
+                self.version,
+                self.records[-1].frame_id,
+                created=(obj.object_id,),
+                updated=("o-001",),
+                aliases={"o-900": "o-001"},
             )
         )
         self._changed.set()
@@ -153,7 +157,7 @@ def flat() -> Flat:
         objects=objects,
         regions=regions,
         records=[frame_record(i) for i in range(1, 13)],
-        deltas=[MapDelta(v, f"robot.walk.{v}", (), ("o-001",)) for v in range(1, 13)],
+        deltas=[MapDelta(v, f"robot.walk.{v}", updated=("o-001",)) for v in range(1, 13)],
     )
 
 
