@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from ovip.config import explain
 from ovip.errors import OvipError
-from ovip_cli import bench, evaluating, export, find, inspect, models, record, replay, scenes, up
+from ovip_cli import bench, editing, evaluating, export, find, inspect, models, record, replay, scenes, up
 
 app = typer.Typer(
     name="ovip",
@@ -23,10 +23,11 @@ app.command("inspect")(inspect.inspect)
 app.command("replay")(replay.replay)
 app.command("record")(record.record)
 app.command("find")(find.find)
-app.command("scenes")(scenes.scenes)
 app.command("export")(export.export)
 app.command("bench")(bench.bench)
 app.command("eval")(evaluating.evaluate)
+app.add_typer(scenes.app, name="scenes")
+app.add_typer(editing.app, name="edit")
 app.add_typer(models.app, name="models")
 
 

@@ -21,6 +21,10 @@ from ovip_cli.stacks import Json, print_json
 class Bench(StrEnum):
     INGEST = "ingest"
     PERCEPTION = "perception"
+    LIFTING = "lifting"
+    MAPPER = "mapper"
+    CIRCLE = "circle"
+    REPLAY = "replay"
     TIER1 = "tier1"
     START = "start"
     RENDERING = "rendering"
@@ -28,13 +32,16 @@ class Bench(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How large a bench is. rate: frames a second of all robots together."""
+    """How large a bench is; None: as large as it is by default. rate: frames a second of all robots together."""
 
     robots: int
     kilobytes: int
     duration: float
     rate: float
-    frames: int
+    frames: int | None
+    objects: list[int] | None
+    detections: list[int] | None
+    dim: list[int] | None
     recording: Path | None
     layout: str
 
@@ -45,16 +52,39 @@ def bench(
     kilobytes: Annotated[int, typer.Option(min=100, help="ingest: size of a frame")] = 300,
     duration: Annotated[float, typer.Option(min=0.1, help="ingest: seconds each way")] = 6.0,
     rate: Annotated[float, typer.Option(min=1.0, help="ingest: frames a second of the paced row")] = 250.0,
-    frames: Annotated[int, typer.Option(min=1, help="perception, rendering: frames to look at")] = 12,
-    recording: Annotated[
-        Path | None, typer.Option(help="perception: a recording instead of the simulated home")
+    frames: Annotated[
+        int | None,
+        typer.Option(
+            min=1, help="perception, rendering (12), mapper (50 a row), circle (10000), replay (all): frames"
+        ),
     ] = None,
-    layout: Annotated[str, typer.Option(help=f"perception: its layout: {', '.join(LAYOUTS)}")] = "ovip",
+    objects: Annotated[str | None, typer.Option(help="mapper: sizes of map, like 100,1000")] = None,
+    detections: Annotated[
+        str | None, typer.Option(help="lifting, mapper, replay: detections a frame, like 20,40")
+    ] = None,
+    dim: Annotated[str | None, typer.Option(help="mapper: numbers a feature has, like 512,1024")] = None,
+    recording: Annotated[
+        Path | None, typer.Option(help="perception, replay: a recording instead of the simulated home")
+    ] = None,
+    layout: Annotated[
+        str, typer.Option(help=f"perception, replay: its layout: {', '.join(LAYOUTS)}")
+    ] = "ovip",
     json: Json = False,
 ) -> None:
-    """Measure durable ingest, perception's steps, tier 1's answers, the start of a stack, rendering."""
+    """Measure durable ingest, perception, the mapper, a whole replay, tier 1's answers, a start, rendering."""
     configure_logging("warning", as_json=False)
-    options = Options(robots, kilobytes, duration, rate, frames, recording, layout)
+    options = Options(
+        robots,
+        kilobytes,
+        duration,
+        rate,
+        frames,
+        _numbers(objects),
+        _numbers(detections),
+        _numbers(dim),
+        recording,
+        layout,
+    )
     began = time.perf_counter()
     every: list[Row] = []
     for which in [name] if name else Bench:
@@ -64,6 +94,16 @@ def bench(
             _print_table(which.value, rows)
     if json:
         print_json({"rows": every, "seconds": round(time.perf_counter() - began, 2)})
+
+
+def _numbers(text: str | None) -> list[int] | None:
+    """Whole numbers above 0 with commas between them."""
+    if text is None:
+        return None
+    words = text.split(",")
+    if not all(word.strip().isdecimal() and int(word) > 0 for word in words):
+        raise typer.BadParameter(f"expected whole numbers above 0 with commas between them, got {text!r}")
+    return [int(word) for word in words]
 
 
 # A bench brings the models and services that it measures only when it runs.
@@ -78,7 +118,35 @@ def _ingest(options: Options) -> list[Row]:
 def _perception(options: Options) -> list[Row]:
     from lab.bench.perceiving import measure_perception
 
-    return asyncio.run(measure_perception(options.frames, options.recording, options.layout))
+    return asyncio.run(measure_perception(options.frames or 12, options.recording, options.layout))
+
+
+def _lifting(options: Options) -> list[Row]:
+    from lab.bench.lifting import measure_lifting
+
+    return [measure_lifting(masks) for masks in options.detections or (20, 40)]
+
+
+def _mapper(options: Options) -> list[Row]:
+    from lab.bench.mapping_alone import measure_mapper_alone
+
+    return measure_mapper_alone(options.objects, options.detections, options.dim, options.frames)
+
+
+def _circle(options: Options) -> list[Row]:
+    from lab.bench.mapping_circle import FRAMES, measure_circle
+
+    return measure_circle(options.frames or FRAMES)
+
+
+def _replay(options: Options) -> list[Row]:
+    from lab.bench.replaying import DETECTIONS, TOUR, measure_replay
+
+    return asyncio.run(
+        measure_replay(
+            options.recording or TOUR, options.layout, options.frames, options.detections or DETECTIONS
+        )
+    )
 
 
 def _tier1(_: Options) -> list[Row]:
@@ -96,12 +164,16 @@ def _start(_: Options) -> list[Row]:
 def _rendering(options: Options) -> list[Row]:
     from lab.bench.rendering import measure_rendering
 
-    return measure_rendering(options.frames)
+    return measure_rendering(options.frames or 12)
 
 
 MEASURES: dict[Bench, Callable[[Options], list[Row]]] = {
     Bench.INGEST: _ingest,
     Bench.PERCEPTION: _perception,
+    Bench.LIFTING: _lifting,
+    Bench.MAPPER: _mapper,
+    Bench.CIRCLE: _circle,
+    Bench.REPLAY: _replay,
     Bench.TIER1: _tier1,
     Bench.START: _start,
     Bench.RENDERING: _rendering,

@@ -27,6 +27,9 @@ class Protocol(StrEnum):
     NAVIGATION = "navigation"
     ABSENCE = "absence"
     VOCABULARY = "vocabulary"
+    RELATIONS = "relations"
+    CHANGE = "change"
+    FLEET = "fleet"
     SCALING = "scaling"
     CALIBRATE = "calibrate"
 

@@ -25,6 +25,7 @@ DataDir = Annotated[
     typer.Option("--data-dir", help="where the stack keeps its state (else OVIP_DATA_DIR)", file_okay=False),
 ]
 Scene = Annotated[str, typer.Option("--scene", help="name of the scene")]
+SceneName = Annotated[str, typer.Argument(help="name of the scene")]
 
 
 @contextlib.contextmanager
