@@ -20,7 +20,7 @@ from services.perception.adapters.model_sets import open_models
 from services.perception.config import Settings
 from services.perception.detecting import Models
 from services.perception.domain.boxes2d import ScoredBox
-from services.perception.domain.lifting import LiftParams, lift, surface_cloud
+from services.perception.domain.lifting import LiftParams, lift_all, surface_cloud
 
 T = TypeVar("T")
 
@@ -76,8 +76,7 @@ async def _look(models: Models, params: LiftParams, look: Look, times: dict[str,
     masks = await _timed(times, "segment", lambda: models.segmenter.segment(frame, [b.box for b in boxes]))
     await _timed(times, "embed", lambda: models.encoder.embed_crops(frame, boxes))
     began = time.perf_counter()
-    for mask in masks:
-        lift(frame, mask, params)
+    lift_all(frame, masks, params)
     _note(times, "lift", began)
     began = time.perf_counter()
     surface_cloud(frame, params)

@@ -85,7 +85,7 @@ def _labels(size: int) -> list[str]:
 
 
 def _map_read_ms(scene: SyntheticScene) -> float:
-    message = codec.map_message(scene.scene_map)
+    parts = list(codec.map_parts(scene.scene_map))
     began = time.perf_counter()
-    codec.map_value(message)
+    codec.map_value(parts)
     return (time.perf_counter() - began) * 1e3

@@ -15,7 +15,7 @@ from lab.evaluation.processes import in_processes
 from lab.evaluation.rows import scene_means
 from lab.figures.curves import draw_curves
 from lab.simulation.imperfect import read_cache
-from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.params import MapParams
 
 PLATEAU = 0.5
 """Points of the criterion within which values are as good as the best one."""
@@ -47,7 +47,7 @@ SWEEPS = (
     Sweep("merge_overlap", "upkeep", (0.2, 0.35, 0.5, 0.65, 0.8)),
     Sweep("merge_inside", "upkeep", (0.5, 0.6, 0.7, 0.8, 0.9)),
     Sweep("merge_similarity", "upkeep", (0.7, 0.75, 0.8, 0.85, 0.9, 0.95)),
-    Sweep("merge_iou", "upkeep", (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)),
+    Sweep("merge_mutual", "upkeep", (0.25, 0.35, 0.5, 0.65, 0.8, 1.0)),
     Sweep("confirm_frames", "upkeep", (2, 3, 4, 5, 6)),
 )
 

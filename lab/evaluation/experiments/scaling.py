@@ -13,7 +13,7 @@ from lab.evaluation.mapping.runs import over_places
 from lab.evaluation.mapping.scoring import instance_columns, judged, read_map, semantic_scores, transfer
 from lab.figures.curves import draw_curves
 from lab.simulation.imperfect import read_cache
-from services.mapper.domain.object_map import ObjectMap
+from services.mapper.domain.object_map import map_of
 from services.mapper.domain.presets import PRESETS
 
 CONFIG = "ours"
@@ -35,11 +35,8 @@ def run(options: Options) -> Result:
 def score(place: Place) -> Row:
     """The place's row."""
     batches = list(read_cache(place.cache)[1])
-    object_map = ObjectMap(PRESETS[CONFIG])
     began = time.process_time()
-    for batch in batches:
-        object_map.integrate(batch)
-    object_map.settle()
+    object_map = map_of(batches, PRESETS[CONFIG])
     seconds = time.process_time() - began
     scene = read_map(object_map)
     seen, wrong = transfer(scene, place.points), diagnosed(place, scene)
@@ -56,7 +53,7 @@ def score(place: Place) -> Row:
         **instance_columns(place, seen.compat),
         **compat.columns,
         "ms_per_frame": 1000 * seconds / max(1, place.frames),
-        "bytes": len(object_map.snapshot()),
+        "bytes": len(object_map.segment()),
         "strict": {**strict.columns, **instance_columns(place, seen.strict)},
     }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from lab.evaluation.asking.truth import Truth
@@ -13,7 +13,7 @@ from lab.evaluation.rows import scene_means
 from lab.evaluation.scores.vocabulary import Means, is_false, means_exactly, means_loosely, vocabulary_score
 from lab.simulation.imperfect import batch_of, gated
 from ovip.scene.types import F64, DetectionBatch, MapObject
-from services.mapper.domain.object_map import ObjectMap
+from services.mapper.domain.object_map import map_of
 from services.perception.domain.lifting import LiftParams
 
 CONFIGS = ("gate on", "gate off")
@@ -64,7 +64,7 @@ def _walk(place: Place, poses: Sequence[F64]) -> Walked:
 
 def _row(config: str, batches: Sequence[DetectionBatch], walked: Walked, truth: Truth) -> Row:
     words = {word for batch in batches for word in batch.words}
-    object_map = _mapped(batches)
+    object_map = map_of(batches)
     objects = object_map.objects()
     compat, strict = (
         _score(words, objects, walked.labels, truth, means) for means in (means_loosely, means_exactly)
@@ -92,11 +92,3 @@ def _score(
         "recall": score.recall,
         "false_objects": sum(is_false(o.label, o.box, things, means) for o in objects),
     }
-
-
-def _mapped(batches: Iterable[DetectionBatch]) -> ObjectMap:
-    object_map = ObjectMap()
-    for batch in batches:
-        object_map.integrate(batch)
-    object_map.settle()
-    return object_map

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import lab.simulation
+import services.perception.domain
 from lab.evaluation.experiment import Options
 from lab.evaluation.mapping.places import Place, Storey, load_place, save_place
 from lab.evaluation.mapping.replica import replica_scenes, replica_source
@@ -190,8 +191,9 @@ def _storeys(home: Home) -> tuple[Storey, ...]:
 def _name_of(spec: PlaceSpec) -> str:
     """A folder name that says which place, and changes with anything that it is made by."""
     digest = hashlib.sha256(repr(spec).encode())
-    for path in sorted(Path(lab.simulation.__file__).parent.rglob("*.py")):
-        digest.update(path.read_bytes())
+    for made_by in (lab.simulation, services.perception.domain):
+        for path in sorted(Path(made_by.__file__ or "").parent.rglob("*.py")):
+            digest.update(path.read_bytes())
     for path in sorted(Path(__file__).parent.glob("places*.py")):
         digest.update(path.read_bytes())
     if spec.root is not None:

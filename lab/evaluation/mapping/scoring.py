@@ -13,7 +13,8 @@ from lab.evaluation.mapping.places import Place
 from lab.evaluation.scores import instance, semantic
 from lab.evaluation.scores.instance import NOTHING
 from ovip.scene.types import F32, F64, I64, Bools, DetectionBatch, MapObject
-from services.mapper.domain.object_map import MapParams, ObjectMap
+from services.mapper.domain.object_map import ObjectMap, map_of
+from services.mapper.domain.params import MapParams
 
 CUTOFF = 0.10
 """Metres from the nearest map point beyond which `strict` calls a surface unmapped."""
@@ -51,11 +52,7 @@ class Judged:
 
 def mapped(batches: Iterable[DetectionBatch], params: MapParams) -> Mapped:
     """The map of all batches, settled, as readers see it."""
-    object_map = ObjectMap(params)
-    for batch in batches:
-        object_map.integrate(batch)
-    object_map.settle()
-    return read_map(object_map)
+    return read_map(map_of(batches, params))
 
 
 def read_map(object_map: ObjectMap) -> Mapped:

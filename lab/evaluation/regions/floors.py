@@ -21,7 +21,7 @@ from lab.simulation.imperfect import gated, imperfect_batches, read_cache, rende
 from lab.simulation.small_house import load_small_house
 from ovip.errors import InvalidInput
 from ovip.scene.types import F64, DetectionBatch, MapObject
-from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.params import MapParams
 from services.regions.domain.assembly import PlacedObjects
 from services.regions.domain.evidence import FloorEvidence
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 from lab.simulation.imperfect.kinship import near_synonyms
-from ovip.scene.boxes import touching
+from ovip.scene.boxes import pair_touching
 from ovip.scene.types import F64
 
 Means = Callable[[str, str], bool]
@@ -40,4 +40,4 @@ def vocabulary_score(words: Collection[str], labels: Collection[str], means: Mea
 
 def is_false(word: str, box: F64, things: Sequence[tuple[str, F64]], means: Means) -> bool:
     """Whether no thing (label and box `(6,)`) that the word means shares space with an object's box `(6,)`."""
-    return not any(means(word, label) and touching(box, held[None])[0] for label, held in things)
+    return not any(means(word, label) and pair_touching(box, held) for label, held in things)

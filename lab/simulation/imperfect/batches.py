@@ -13,7 +13,8 @@ from lab.simulation.imperfect.truth import TrueThing, truth_of
 from ovip.recordings import OnboardDetection
 from ovip.scene.types import Detection, DetectionBatch, Frame
 from services.perception.domain.gate import GateParams, gate_offline
-from services.perception.domain.lifting import LiftParams, lift, surface_cloud
+from services.perception.domain.lifting import LiftParams, lift_all, surface_cloud
+from services.perception.domain.nearest import nearest_depth
 
 
 def imperfect_batches(
@@ -47,6 +48,7 @@ def batch_of(frame: Frame, looks: Sequence[Look], lifting: LiftParams) -> Detect
         detections=tuple(_lifted(frame, looks, lifting)),
         surface=surface_cloud(frame, lifting),
         words=tuple(sorted({look.label for look in looks})),
+        nearest=nearest_depth(frame.depth, farthest=lifting.farthest_seen),
     )
 
 
@@ -79,8 +81,9 @@ def onboard_with_features(looks: Sequence[Look]) -> tuple[OnboardDetection, ...]
 
 
 def _lifted(frame: Frame, looks: Sequence[Look], lifting: LiftParams) -> Iterator[Detection]:
-    for index, look in enumerate(looks):
-        lifted = lift(frame, look.mask, lifting) if look.score >= lifting.min_confidence else None
+    sure = [(index, look) for index, look in enumerate(looks) if look.score >= lifting.min_confidence]
+    made = lift_all(frame, [look.mask for _, look in sure], lifting)
+    for (index, look), lifted in zip(sure, made, strict=True):
         if lifted is None:
             continue
         yield Detection(

@@ -2,7 +2,7 @@ import pytest
 
 from lab.evaluation.experiment import TEST_SEED, Options
 from lab.evaluation.experiments.calibrate import SWEEPS, Sweep, choice, plateau_middle, training
-from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.params import MapParams
 
 
 def test_the_middle_of_the_plateau_around_the_best_is_chosen() -> None:

@@ -19,7 +19,7 @@ from lab.evaluation.mapping.scoring import (
     transfer,
 )
 from lab.evaluation.scores.instance import NOTHING
-from services.mapper.domain.object_map import MapParams
+from services.mapper.domain.params import MapParams
 from tests.builders import axis, batch, detection, same
 from tests.unit.lab.evaluation.tabletop import (
     MUG,

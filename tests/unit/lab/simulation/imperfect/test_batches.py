@@ -24,9 +24,11 @@ from lab.simulation.imperfect import (
     truth_of,
 )
 from ovip.codec import encode_detection_batch
-from services.mapper.domain.object_map import MapParams, ObjectMap
+from services.mapper.domain.object_map import ObjectMap
+from services.mapper.domain.params import MapParams
 from services.perception.domain.gate import GateParams
 from services.perception.domain.lifting import LiftParams, lift, surface_cloud
+from services.perception.domain.nearest import nearest_depth
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +62,7 @@ def test_detections_are_lifted_as_perception_lifts(
             assert np.array_equal(detection.box, made.box) and np.array_equal(detection.feature, look.feature)
             assert (detection.label, detection.box2) == (look.label, look.box2)
         assert np.array_equal(batch.surface, surface_cloud(seen.frame, LiftParams()))
+        assert np.array_equal(batch.nearest, nearest_depth(seen.depth, farthest=LiftParams().farthest_seen))
         assert batch.words == tuple(sorted({look.label for look in looks})) and not batch.late
 
 
