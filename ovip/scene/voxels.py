@@ -23,9 +23,13 @@ def pack_cells(cells: I64 | I32) -> I64:
 
 def voxel_cells(keys: I64) -> I32:
     """Integer cells `(N, 3)` of keys made by `voxel_keys`."""
+    return np.stack(voxel_columns(keys), axis=1).astype(np.int32)
+
+
+def voxel_columns(keys: I64) -> tuple[I64, I64, I64]:
+    """x, y and z `(N,)` of the integer cells of keys made by `voxel_keys`."""
     low = (1 << _BITS) - 1
-    cells = np.stack([keys >> (2 * _BITS), (keys >> _BITS) & low, keys & low], axis=1) - _OFFSET
-    return cells.astype(np.int32)
+    return (keys >> (2 * _BITS)) - _OFFSET, ((keys >> _BITS) & low) - _OFFSET, (keys & low) - _OFFSET
 
 
 def downsample(points: F32, size: float, colors: U8 | None = None) -> tuple[F32, U8 | None]:

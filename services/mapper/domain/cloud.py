@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ovip.scene.types import F32, F64, I32, I64, U8, Bools
-from ovip.scene.voxels import pack_cells, voxel_cells
+from ovip.scene.voxels import pack_cells, voxel_cells, voxel_columns
 
 MOST_VOXELS = 30_000
 """Voxels a cloud may have before it doubles their edge: a floor or wall need not be known as finely as a cup."""
@@ -78,9 +78,14 @@ class VoxelCloud:
 
     @property
     def box(self) -> F64:
-        """`(6,)` around the voxels' mean points."""
-        means = self.means
-        return np.concatenate([means.min(axis=0), means.max(axis=0)])
+        """`(6,)` around the voxels' mean points: those of the outermost voxels."""
+        box = np.empty(6)
+        for axis, column in enumerate(voxel_columns(self.keys)):
+            for side, outermost, most in ((0, column.min(), np.min), (3, column.max(), np.max)):
+                rim = self.tally[np.flatnonzero(column == outermost)]
+                inside = most(rim[:, 1 + axis] / rim[:, 0] + 0.5) * (self.size / _STEPS)
+                box[side + axis] = outermost * self.edge + inside
+        return box
 
     def merged(self, other: VoxelCloud) -> VoxelCloud:
         """Both clouds' sums added, at the coarser level of the two or coarser."""
@@ -116,11 +121,14 @@ class VoxelCloud:
 
 def clouds_of(points: Sequence[F32], colors: Sequence[U8], size: float) -> list[VoxelCloud]:
     """A cloud of each `(N, 3)` points with their `(N, 3)` colours; all of them binned in one pass."""
-    scaled = np.concatenate(points).astype(np.float64) / size
+    scaled = np.concatenate(points).astype(np.float64)
+    scaled /= size
     cells = np.floor(scaled)
+    scaled -= cells
+    scaled *= _STEPS
     tally = np.empty((len(scaled), 7), np.int32)
     tally[:, 0] = 1
-    tally[:, 1:4] = (scaled - cells) * _STEPS
+    tally[:, 1:4] = scaled
     tally[:, 4:] = np.concatenate(colors)
     keys = pack_cells(cells.astype(np.int64))
     ends = np.cumsum([0, *(len(p) for p in points)])
@@ -143,14 +151,16 @@ def _united(a: VoxelCloud, b: VoxelCloud) -> VoxelCloud:
     """The sums of two clouds of one level; the smaller is looked up in the larger."""
     large, small = (a, b) if len(a) >= len(b) else (b, a)
     at = np.searchsorted(large.keys, small.keys)
-    known = large.keys[np.minimum(at, len(large) - 1)] == small.keys
-    tally = large.tally.copy()
-    tally[at[known]] = _capped(tally[at[known]].astype(np.int64) + small.tally[known])
-    if known.all():
-        return VoxelCloud(large.keys, tally, a.size, a.level)
-    fresh = ~known
-    keys = np.insert(large.keys, at[fresh], small.keys[fresh])
-    return VoxelCloud(keys, np.insert(tally, at[fresh], small.tally[fresh], axis=0), a.size, a.level)
+    same = large.keys.take(at, mode="clip") == small.keys
+    known, fresh = np.flatnonzero(same), np.flatnonzero(~same)
+    old, new = np.ones(len(large) + len(fresh), bool), at[fresh] + np.arange(len(fresh))
+    old[new] = False
+    keys, tally = np.empty(len(old), np.int64), np.empty((len(old), 7), np.int32)
+    keys[old], keys[new] = large.keys, small.keys[fresh]
+    tally[old], tally[new] = large.tally, small.tally[fresh]
+    both = np.flatnonzero(old)[at[known]]
+    tally[both] = _capped(tally[both].astype(np.int64) + small.tally[known])
+    return VoxelCloud(keys, tally, a.size, a.level)
 
 
 def _capped(tally: I64) -> I32:

@@ -26,7 +26,15 @@ class Hold:
 
 
 def holds(thing: Body, other: Body, params: RelationParams) -> tuple[Hold, ...]:
-    """All that an other may be to a thing, whatever else there is. Boxes tell first what cannot be."""
+    """All that an other may be to a thing, whatever else there is; measured once while both are as they are."""
+    known: tuple[RelationParams, tuple[Hold, ...]] | None = thing.known.get(other)
+    if known is None or known[0] != params:
+        known = thing.known[other] = (params, _measured(thing, other, params))
+    return known[1]
+
+
+def _measured(thing: Body, other: Body, params: RelationParams) -> tuple[Hold, ...]:
+    """Boxes tell first what cannot be."""
     bears, backs, carries = (
         _may_bear(thing, other, params),
         _may_back(thing, other, params),

@@ -90,8 +90,7 @@ class ObjectMap:
         """Denoises what changed since the last upkeep, merges duplicates, drops noise, relates (SPEC 2.6, 2.8, 2.9)."""
         changes = self._begin()
         self.upkept_batches = self.batches
-        for record in self._unsettled():
-            self._denoise(record)
+        self._denoise(self._unsettled())
         merge_duplicates(self.table, self.table.dirty, self.params.upkeep)
         self._forget_noise()
         recognise_moves(self.table, self.params)
@@ -325,10 +324,11 @@ class ObjectMap:
         grown = abs(len(record.cloud) - voxels) > _SETTLED_SHARE * voxels
         return not grown and bool((np.abs(self.table.box(record) - box) <= _SETTLED_METRES).all())
 
-    def _denoise(self, record: ObjectRecord) -> None:
-        cloud = denoised(record.cloud, self.params.upkeep)
-        if len(cloud) < len(record.cloud):
-            self.table.set_cloud(record, cloud)
+    def _denoise(self, records: Sequence[ObjectRecord]) -> None:
+        clean = denoised([r.cloud for r in records], self.params.upkeep)
+        for record, cloud in zip(records, clean, strict=True):
+            if len(cloud) < len(record.cloud):
+                self.table.set_cloud(record, cloud)
 
     def _forget_noise(self) -> None:
         """Unconfirmed objects that were not seen again for a while were noise."""

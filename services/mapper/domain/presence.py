@@ -223,8 +223,12 @@ class Evidence:
 
 
 def _spread(points: F32) -> F32:
-    """At most MOST_SAMPLES of `(N, 3)` points: one a voxel, of the finest voxels that give so few."""
-    size = _FINEST
+    """At most MOST_SAMPLES of `(N, 3)` points: one a voxel, of voxels not much coarser than need be.
+
+    Of a surface at the finest, every step by the square root of 2 leaves half.
+    """
+    steps = max(0, int(np.log2(max(1, len(points)) / MOST_SAMPLES)) - 1)
+    size = _FINEST * 2.0 ** (steps / 2)
     chosen = np.unique(voxel_keys(points, size), return_index=True)[1]
     while len(chosen) > MOST_SAMPLES:
         size *= np.sqrt(2.0)

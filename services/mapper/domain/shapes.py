@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -55,6 +57,11 @@ class Body:
     label: str
     box: F64
     points: F32
+
+    @cached_property
+    def known(self) -> WeakKeyDictionary[Body, Any]:
+        """What was measured of it with others, for as long as they are as they were."""
+        return WeakKeyDictionary()
 
     @cached_property
     def bottom(self) -> float:

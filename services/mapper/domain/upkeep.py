@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ovip.scene.boxes import pair_intersection, volume
-from ovip.scene.types import F64, I32, I64, Bools
-from ovip.scene.voxels import pack_cells, voxel_cells
+from ovip.scene.clusters import cell_clusters
+from ovip.scene.types import F64, I64
+from ovip.scene.voxels import voxel_cells
 from services.mapper.domain.cloud import VoxelCloud
-
-_HALF_THE_NEIGHBOURS = np.array(
-    [(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) > (0, 0, 0)], np.int64
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,15 +50,23 @@ class UpkeepParams:
     same_label: bool = True
 
 
-def denoised(cloud: VoxelCloud, params: UpkeepParams) -> VoxelCloud:
-    """The cloud's clusters of at least `cluster_share` of the largest, voxels seen once dropped where most were not.
+def denoised(clouds: Sequence[VoxelCloud], params: UpkeepParams) -> list[VoxelCloud]:
+    """Each cloud's clusters of at least `cluster_share` of its largest; voxels seen once go where most were not.
 
-    A single view's stray points at an edge are seen once; a surface that stays is seen again.
+    A single view's stray points at an edge are seen once; a surface that stays is seen again. Of one cluster is what is
+    less than half a `cluster_radius` apart, and some up to it (`cell_clusters`).
     """
-    often = cloud.counts > 1
-    if often.mean() > 0.5:
-        cloud = cloud.kept(often)
-    return cloud.kept(_large_clusters(cloud, params))
+    kept = [_seen_again(cloud) for cloud in clouds]
+    if not kept:
+        return []
+    owners = np.repeat(np.arange(len(kept)), [len(cloud) for cloud in kept])
+    labels = cell_clusters(np.concatenate([_cells(cloud, params) for cloud in kept]), owners)
+    sizes = np.bincount(labels)
+    largest = np.zeros(len(kept), np.int64)
+    np.maximum.at(largest, owners, sizes[labels])
+    stay = sizes[labels] >= params.cluster_share * largest[owners]
+    parts = np.split(stay, np.cumsum([len(cloud) for cloud in kept])[:-1])
+    return [cloud.kept(part) for cloud, part in zip(kept, parts, strict=True)]
 
 
 def overlap(a: VoxelCloud, b: VoxelCloud, reach: float) -> float:
@@ -97,24 +101,11 @@ def _share_on(points: F64, others: F64, reach: float) -> float:
     return float(np.isfinite(distance).mean())
 
 
-def _large_clusters(cloud: VoxelCloud, params: UpkeepParams) -> Bools:
-    """Voxels of clusters large enough; one cluster holds what is less than half a radius apart, and some up to it."""
-    shift = max(0, round(params.cluster_radius / (2 * cloud.edge)).bit_length() - 1)
-    keys, inverse = np.unique(pack_cells(voxel_cells(cloud.keys) >> shift), return_inverse=True)
-    labels = _components(keys)[inverse]
-    sizes = np.bincount(labels)
-    return np.asarray(sizes[labels] >= params.cluster_share * sizes.max())
+def _seen_again(cloud: VoxelCloud) -> VoxelCloud:
+    often = cloud.counts > 1
+    return cloud.kept(often) if often.mean() > 0.5 else cloud
 
 
-def _components(keys: I64) -> I32:
-    """Component `(N,)` of each of N cells, by sorted key, joined where they touch, corners included."""
-    cells = voxel_cells(keys)
-    pairs = []
-    for step in _HALF_THE_NEIGHBOURS:
-        beside = pack_cells(cells + step)
-        at = np.minimum(np.searchsorted(keys, beside), len(keys) - 1)
-        there = np.flatnonzero(keys[at] == beside)
-        pairs.append(np.stack([there, at[there]]))
-    i, j = np.concatenate(pairs, axis=1)
-    graph = coo_array((np.ones(len(i), np.int8), (i, j)), shape=(len(keys),) * 2)
-    return np.asarray(connected_components(graph, directed=False)[1], np.int32)
+def _cells(cloud: VoxelCloud, params: UpkeepParams) -> I64:
+    """Cells of half a cluster's radius, or the cloud's own where they are larger."""
+    return voxel_cells(cloud.keys).astype(np.int64) // max(1, round(params.cluster_radius / (2 * cloud.edge)))

@@ -25,10 +25,25 @@ def _cup(x: float = 0.01) -> F32:
     return block((x, 0.01, 0.01), (x + 0.1, 0.11, 0.11), 0.02)
 
 
+def _denoised(cloud: VoxelCloud) -> VoxelCloud:
+    (clean,) = denoised([cloud], PARAMS)
+    return clean
+
+
+def test_clouds_denoised_together_are_those_denoised_apart() -> None:
+    stray = np.array([[0.51, 0.01, 0.01], [0.53, 0.01, 0.01]], np.float32)
+    clouds = [_cloud(_cup(), stray), _cloud(_cup(0.3)), _cloud(stray)]
+
+    together = denoised(clouds, PARAMS)
+
+    assert [c.keys.tolist() for c in together] == [_denoised(c).keys.tolist() for c in clouds]
+    assert denoised([], PARAMS) == []
+
+
 def test_a_small_clutter_away_from_the_thing_goes() -> None:
     stray = np.array([[0.51, 0.01, 0.01], [0.53, 0.01, 0.01]], np.float32)
 
-    kept = denoised(_cloud(_cup(), stray), PARAMS)
+    kept = _denoised(_cloud(_cup(), stray))
 
     assert kept.box[3] < 0.2
     assert len(kept) == len(_cloud(_cup()))
@@ -38,18 +53,18 @@ def test_a_large_second_part_stays() -> None:
     """Two legs of one table may hang together by nothing that was seen."""
     both = _cloud(_cup(), _cup(0.51))
 
-    assert len(denoised(both, PARAMS)) == len(both)
+    assert len(_denoised(both)) == len(both)
 
 
 def test_voxels_seen_once_go_where_most_were_seen_again() -> None:
     edge = np.array([[0.131, 0.01, 0.01], [0.151, 0.01, 0.01]], np.float32)  # joined to the cup
 
-    assert denoised(_cloud(_cup(), _cup(), edge), PARAMS).box[3] < 0.12
-    assert denoised(_cloud(_cup(), edge), PARAMS).box[3] > 0.14  # nothing was seen twice yet
+    assert _denoised(_cloud(_cup(), _cup(), edge)).box[3] < 0.12
+    assert _denoised(_cloud(_cup(), edge)).box[3] > 0.14  # nothing was seen twice yet
 
 
 def test_one_voxel_is_left_alone() -> None:
-    assert len(denoised(_cloud(np.full((1, 3), 0.01, np.float32)), PARAMS)) == 1
+    assert len(_denoised(_cloud(np.full((1, 3), 0.01, np.float32)))) == 1
 
 
 def test_overlap_is_the_share_of_the_smaller_cloud_by_hand() -> None:
