@@ -22,8 +22,8 @@ from ovip.scene.features import normalize
 from ovip.scene.types import F32, Detection, DetectionBatch, MapDelta
 from ovip.store import Append, Lease, Store
 from services.mapper.domain.object_map import ObjectMap
-from services.mapper.domain.objects import ObjectRecord
 from services.mapper.domain.params import MapParams
+from services.mapper.domain.records import ObjectRecord
 from services.mapper.domain.upkeep import UpkeepParams
 from services.mapper.history import MAP, STAGE, VERSION
 from services.mapper.journal import FrameInput, Step, entry_id

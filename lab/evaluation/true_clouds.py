@@ -64,7 +64,7 @@ def clouds_of_walk(frames: Iterable[SeenFrame], seed: int) -> TrueClouds:
         _add(exact, seen)
         _, depth, pose = sensor.observe(seen.frame.rgb, seen.depth, seen.world_from_camera, seen.index)
         _add(noisy, replace(seen, depth=depth, world_from_camera=pose))
-    cleaned = {i: denoised(cloud, UpkeepParams()) for i, cloud in noisy.items()}
+    cleaned = dict(zip(noisy, denoised(list(noisy.values()), UpkeepParams()), strict=True))
     return TrueClouds(_points_of(exact), _points_of(cleaned))
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from ovip.scene.types import MapDelta, MapObject, Presence, StepKind
+from ovip.scene.types import MapDelta, StepKind
 from services.mapper.domain.object_map import ObjectMap
-from services.mapper.domain.params import MapParams
 
 
 class ShownCount:
@@ -21,15 +20,9 @@ class ShownCount:
         else:
             self._ids -= {*delta.removed, *delta.aliases}
             for object_id in (*delta.created, *delta.updated):
-                found = objects.find(object_id)
-                if found is not None and _is_shown(found, objects.params):
+                if objects.shows(object_id):
                     self._ids.add(object_id)
                 else:
                     self._ids.discard(object_id)
         self._version = delta.version
         return len(self._ids)
-
-
-def _is_shown(o: MapObject, params: MapParams) -> bool:
-    confirmed = o.frames >= params.upkeep.confirm_frames or o.pinned or o.label_given
-    return confirmed and o.presence is Presence.PRESENT

@@ -14,7 +14,7 @@ class Aligner(Protocol):
     def align(self, cloud: F32, other: F32, guess: F64 | None) -> Alignment:
         """How `other` `(M, 3)` lies on `cloud` `(N, 3)`, both in metres, z up.
 
-        guess: `(4, 4)` world_from_other to start from; None: anywhere. InvalidInput where it cannot be told, and
-        why; NotConfigured where a package is missing.
+        guess: `(4, 4)` world_from_other to start from; None: anywhere. InvalidInput where a cloud is
+        none, Unreliable where it cannot be told, and why; NotConfigured where a package is missing.
         """
         ...

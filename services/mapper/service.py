@@ -80,8 +80,8 @@ class Mapper:
         await self._check_known(scene)
         async with self._maps.reading(scene) as current:
             found, version = current.objects.find(object_id), current.objects.version
-        if found is None:
-            raise NotFound(f"object {object_id[:80]!r} is not in scene {scene} at version {version}")
+            if found is None:
+                raise _not_there(scene, object_id, current.objects)
         return found, version
 
     async def get_points(
@@ -207,9 +207,18 @@ def _clouds(
     for object_id in object_ids or [o.object_id for o in objects.objects()]:
         cloud = objects.cloud_of(object_id)
         if cloud is None:
-            raise NotFound(f"object {object_id[:80]!r} is not in scene {scene} at version {objects.version}")
+            raise _not_there(scene, object_id, objects)
         clouds[object_id] = cloud
     return objects.version, clouds
+
+
+def _not_there(scene: str, object_id: str, objects: ObjectMap) -> NotFound:
+    deleted = objects.deleted_at(object_id)
+    if deleted:
+        return NotFound(
+            f"object {object_id[:80]!r} of scene {scene} was deleted by an operator at version {deleted}"
+        )
+    return NotFound(f"object {object_id[:80]!r} is not in scene {scene} at version {objects.version}")
 
 
 def _thinned(clouds: dict[str, tuple[F32, U8]], max_points: int) -> dict[str, tuple[F32, U8]]:

@@ -24,7 +24,7 @@ from lab.simulation.imperfect import (
     small_house_frames,
 )
 from lab.simulation.world import HOME_CAMERA
-from ovip.errors import InvalidInput
+from ovip.errors import InvalidInput, Unreliable
 from ovip.scene.boxes import box_of, pairwise_iou
 from ovip.scene.types import F32, F64, Detection, DetectionBatch, MapObject
 from ovip.scene.voxels import downsample
@@ -118,7 +118,7 @@ def _aligned(surface: F32, other: F32, there_from_home: F64) -> _Found | None:
     there = _moved(other, there_from_home)
     try:
         found = IcpAligner().align(surface, there, None)
-    except InvalidInput:
+    except Unreliable:
         return None
     off = found.world_from_other @ there_from_home  # what should be no motion at all
     middle = other.mean(axis=0, dtype=np.float64)

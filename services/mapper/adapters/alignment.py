@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ovip.errors import InvalidInput, NotConfigured
+from ovip.errors import InvalidInput, NotConfigured, Unreliable
 from ovip.scene.types import F32, F64
 from ovip.scene.versions import Alignment
 from ovip.scene.voxels import downsample
@@ -77,7 +77,7 @@ class IcpAligner:
         """How `other` `(M, 3)` lies on `cloud` `(N, 3)`, both in metres, z up.
 
         guess: `(4, 4)` world_from_other, upright, to start from; then nothing else is tried. InvalidInput where a cloud
-        is too small or there is no alignment to be believed; NotConfigured without Open3D.
+        is too small, Unreliable where there is no alignment to be believed; NotConfigured without Open3D.
         """
         o3d = _open3d()
         still, moving = self._checked(cloud, "this"), self._checked(other, "the other")
@@ -102,7 +102,7 @@ class IcpAligner:
     def _starts(self, still: F32, moving: F32) -> list[F64]:
         found = [one.world_from_other for one in propose(still, moving, self._params.search)]
         if not found:
-            raise InvalidInput(
+            raise Unreliable(
                 "alignment: no placement of the other surface shares enough floor plan with this one"
             )
         return found
@@ -127,7 +127,7 @@ class IcpAligner:
         for one in placed[1:]:
             near = one.agreement > self._params.rival * best.agreement
             if one.enough and near and differ(one.pose, best.pose, centre, self._params.search):
-                raise InvalidInput(
+                raise Unreliable(
                     "alignment: ambiguous, a clearly different placement is nearly as good "
                     f"(agreement {one.agreement:.2f} against {best.agreement:.2f}); a guess would decide it"
                 )
@@ -147,7 +147,7 @@ class IcpAligner:
             (rmse > params.max_rmse, f"an rmse of at most {params.max_rmse * 100:.1f} cm"),
         ):
             if trouble:
-                raise InvalidInput(f"alignment: expected {wanted}, the best placement has {figures}")
+                raise Unreliable(f"alignment: expected {wanted}, the best placement has {figures}")
         return Alignment(pose, overlap, rmse)
 
 

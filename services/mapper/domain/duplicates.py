@@ -6,7 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from services.mapper.domain.objects import ObjectRecord, ObjectTable
+from services.mapper.domain.objects import ObjectTable
+from services.mapper.domain.records import ObjectRecord
 from services.mapper.domain.upkeep import UpkeepParams, mutual_overlap, nesting, overlap
 
 

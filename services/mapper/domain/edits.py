@@ -12,8 +12,9 @@ from ovip.scene.edits import Delete, EditRequest, Merge, Pin, Rename, Split
 from ovip.scene.types import F64, Bools, Presence
 from ovip.scene.words import normalize_word
 from services.mapper.domain.cloud import VoxelCloud
-from services.mapper.domain.objects import ObjectRecord, ObjectTable
+from services.mapper.domain.objects import ObjectTable
 from services.mapper.domain.params import MapParams
+from services.mapper.domain.records import ObjectRecord
 from services.mapper.domain.relations import reach
 
 _LONGEST_LABEL = 200
@@ -66,7 +67,7 @@ def own_part(table: ObjectTable, record: ObjectRecord, cloud: VoxelCloud) -> Vox
 def part_from_neighbours(table: ObjectTable, hidden: ObjectRecord, params: MapParams) -> None:
     """What readers saw beside a deleted object is another thing: it will not be taken for it and hidden, too."""
     for other in table.near(table.box(hidden)):
-        seen = other.frames >= params.upkeep.confirm_frames or other.pinned or other.given_label
+        seen = other.is_confirmed(params.upkeep.confirm_frames)
         if other is not hidden and not other.deleted and seen:
             table.part(hidden, other)
 

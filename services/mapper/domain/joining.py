@@ -14,8 +14,9 @@ from ovip.scene.voxels import pack_cells
 from services.mapper.domain.association import Instances, association_scores, needs_all
 from services.mapper.domain.cloud import VoxelCloud
 from services.mapper.domain.edits import part_from_neighbours
-from services.mapper.domain.objects import ObjectRecord, ObjectTable
+from services.mapper.domain.objects import ObjectTable
 from services.mapper.domain.params import MapParams
+from services.mapper.domain.records import ObjectRecord
 from services.mapper.domain.spatial import Spatial
 
 MOST_TILT = math.radians(3)

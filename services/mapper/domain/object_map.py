@@ -26,8 +26,9 @@ from services.mapper.domain.duplicates import merge_duplicates
 from services.mapper.domain.edits import apply_edit, own_part
 from services.mapper.domain.fusion import fusion_weight
 from services.mapper.domain.joining import join_maps
-from services.mapper.domain.objects import Changes, ObjectRecord, ObjectTable, added, remembered
+from services.mapper.domain.objects import ObjectTable
 from services.mapper.domain.params import MapParams
+from services.mapper.domain.records import Changes, ObjectRecord, added, remembered
 from services.mapper.domain.snapshot import Head, read_segments, record_digest, write_head, write_segment
 from services.mapper.domain.spatial import Spatial
 from services.mapper.domain.surroundings import recognise_moves, relate, watch
@@ -141,12 +142,13 @@ class ObjectMap:
     ) -> tuple[MapObject, ...]:
         """The objects in order of birth, as readers see them."""
         return tuple(
-            self._as_read(r)
-            for r in self.table
-            if not r.deleted
-            and (include_unconfirmed or self._confirmed(r))
-            and (include_departed or r.presence is Presence.PRESENT)
+            self._as_read(r) for r in self.table if self._is_shown(r, include_unconfirmed, include_departed)
         )
+
+    def shows(self, object_id: str) -> bool:
+        """Whether the object of this very id is among `objects()`."""
+        record = self.table.get(object_id)
+        return record is not None and self._is_shown(record)
 
     def find(self, object_id: str) -> MapObject | None:
         """One object by its id or by an id merged into it."""
@@ -340,7 +342,14 @@ class ObjectMap:
         return not record.deleted and self.batches - record.last_batch >= self.params.upkeep.forget_after
 
     def _confirmed(self, record: ObjectRecord) -> bool:
-        return record.frames >= self.params.upkeep.confirm_frames or record.pinned or bool(record.given_label)
+        return record.is_confirmed(self.params.upkeep.confirm_frames)
+
+    def _is_shown(self, record: ObjectRecord, unconfirmed: bool = False, departed: bool = False) -> bool:
+        return (
+            not record.deleted
+            and (unconfirmed or self._confirmed(record))
+            and (departed or record.presence is Presence.PRESENT)
+        )
 
     def _record(self, object_id: str) -> ObjectRecord | None:
         record = self.table.get(self.table.resolve(object_id))

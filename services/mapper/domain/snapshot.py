@@ -15,9 +15,10 @@ import numpy.typing as npt
 from ovip.errors import Corrupt, InvalidInput
 from ovip.scene.types import Box2, Move, Presence, Relation, RelationKind
 from services.mapper.domain.cloud import VoxelCloud
-from services.mapper.domain.objects import ObjectRecord, ObjectTable
+from services.mapper.domain.objects import ObjectTable
 from services.mapper.domain.params import MapParams, params_json, params_of
 from services.mapper.domain.presence import Evidence
+from services.mapper.domain.records import ObjectRecord
 
 FORMAT = 2
 _MAGIC = b"OVIPMAP\n"

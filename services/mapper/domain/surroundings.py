@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ovip.scene.types import F64, DetectionBatch, Move, Presence, Relation
-from services.mapper.domain.objects import ObjectRecord, ObjectTable
+from services.mapper.domain.objects import ObjectTable
 from services.mapper.domain.params import MapParams
 from services.mapper.domain.presence import (
     Evidence,
@@ -17,6 +17,7 @@ from services.mapper.domain.presence import (
     matching_departed,
     sight,
 )
+from services.mapper.domain.records import ObjectRecord
 from services.mapper.domain.relations import Body, reach, relations_of
 
 _WATCHED_GROWTH = 1.25  # of a cloud, after which other places of it are watched
@@ -122,22 +123,18 @@ def _is_there(table: ObjectTable, object_id: str) -> None:
 def _is_watched(record: ObjectRecord, params: MapParams) -> bool:
     if record.pinned or record.deleted or record.presence is not Presence.PRESENT:
         return False
-    return _confirmed(record, params)
-
-
-def _confirmed(record: ObjectRecord, params: MapParams) -> bool:
-    return record.frames >= params.upkeep.confirm_frames
+    return record.is_confirmed(params.upkeep.confirm_frames)
 
 
 def _may_have_moved(record: ObjectRecord, params: MapParams) -> bool:
     """A pinned object keeps its own id."""
-    return _confirmed(record, params) and not record.pinned
+    return record.is_confirmed(params.upkeep.confirm_frames) and not record.pinned
 
 
 def _is_related(record: ObjectRecord, params: MapParams) -> bool:
     if record.deleted or record.presence is not Presence.PRESENT:
         return False
-    return _confirmed(record, params) or record.pinned
+    return record.is_confirmed(params.upkeep.confirm_frames)
 
 
 def _evidence_of(record: ObjectRecord) -> Evidence:

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from ovip.errors import InvalidInput, NotConfigured
+from ovip.errors import InvalidInput, NotConfigured, Unreliable
 from ovip.scene.types import F64
 from services.mapper.adapters.alignment import IcpAligner
 from services.mapper.domain.registration import turn
@@ -59,7 +59,7 @@ def test_two_overlapping_parts_align() -> None:
 def test_a_guess_decides_what_shape_alone_cannot() -> None:
     bare = room(5.0, 4.2)
 
-    with pytest.raises(InvalidInput, match="ambiguous"):
+    with pytest.raises(Unreliable, match="ambiguous"):
         ALIGNER.align(bare, resampled(bare, 3), None)
     found = ALIGNER.align(bare, resampled(bare, 3), turn(0.03))
 
@@ -71,7 +71,7 @@ def test_another_room_is_refused_with_the_figures() -> None:
         7.5, 2.6, (6.0, 0.2, 0, 7.0, 1.6, 0.9), (1.0, 1.8, 0, 3.0, 2.5, 1.3), (3.5, 0.1, 0, 4.0, 0.9, 1.7)
     )
 
-    with pytest.raises(InvalidInput, match=r"overlap 0\.\d\d, agreement 0\.\d\d, rmse \d\.\d cm"):
+    with pytest.raises(Unreliable, match=r"overlap 0\.\d\d, agreement 0\.\d\d, rmse \d\.\d cm"):
         ALIGNER.align(ROOM, another, None)
 
 

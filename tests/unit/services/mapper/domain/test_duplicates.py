@@ -10,8 +10,8 @@ import pytest
 from ovip.scene.types import F32, Detection
 from services.mapper.domain.duplicates import merge_duplicates
 from services.mapper.domain.object_map import ObjectMap
-from services.mapper.domain.objects import ObjectRecord
 from services.mapper.domain.params import MapParams
+from services.mapper.domain.records import ObjectRecord
 from services.mapper.domain.upkeep import UpkeepParams
 from tests.builders import axis, batch, detection, leaning
 
