@@ -8,6 +8,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from lab.bench.rows import Row
 from ovip_cli import bench
 
 
@@ -35,3 +36,30 @@ def test_an_unknown_bench_is_refused_with_those_that_there_are(command: typer.Ty
     result = CliRunner().invoke(command, ["sleep"])
     assert result.exit_code == 2
     assert "tier1" in result.output
+
+
+def test_sizes_are_given_as_numbers_with_commas(
+    command: typer.Typer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given: list[bench.Options] = []
+
+    def measure(options: bench.Options) -> list[Row]:
+        given.append(options)
+        return [{"objects": 1}]
+
+    monkeypatch.setitem(bench.MEASURES, bench.Bench.MAPPER, measure)
+    words = ["mapper", "--objects", "100,1000", "--dim", "512", "--frames", "7"]
+    assert CliRunner().invoke(command, words).exit_code == 0
+    assert (given[0].objects, given[0].dim, given[0].detections, given[0].frames) == (
+        [100, 1000],
+        [512],
+        None,
+        7,
+    )
+
+
+@pytest.mark.parametrize("words", ["", "a", "100,", "0", "-5", "1.5", "²"])
+def test_what_is_no_list_of_sizes_is_refused_with_what_was_expected(command: typer.Typer, words: str) -> None:
+    result = CliRunner().invoke(command, ["mapper", "--objects", words])
+    assert result.exit_code == 2
+    assert "expected whole numbers above 0" in result.output

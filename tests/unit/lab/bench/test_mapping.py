@@ -15,8 +15,8 @@ from services.mapper.domain.association import AssociationParams, Instances, ass
 
 COLUMNS = [
     *("objects", "detections", "dim", "lift_ms", "denoise_ms", "associate_ms", "fuse_ms", "upkeep_ms"),
-    *("commit_ms", "frame_ms", "frame_p99_ms", "dense_ms", "ratio", "dense_fuse_ms", "bytes_per_frame"),
-    *("dense_bytes_per_frame", "snapshot_ms", "bytes_map", "load"),
+    *("commit_ms", "frame_ms", "frame_p99_ms", "dense_ms", "bytes_per_frame", "watch_ms", "snapshot_ms"),
+    *("ratio", "dense_fuse_ms", "dense_bytes_per_frame", "bytes_map", "load"),
 ]
 
 
