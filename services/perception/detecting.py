@@ -70,10 +70,13 @@ class Detecting:
         self, frame: Frame, words: Sequence[str], onboard: Sequence[OnboardDetection] | None, late: bool
     ) -> DetectionBatch:
         """What goes to the mapper for a frame; late batches carry no surface and no depth, theirs was sent before."""
-        detections = await self.detect(frame, words, onboard)
         surface, nearest = np.zeros((0, 3), np.float32), np.zeros((0, 0), np.float32)
-        if not late:
-            surface, nearest = await asyncio.to_thread(self._seen, frame)
+        if late:
+            detections = await self.detect(frame, words, onboard)
+        else:
+            detections, (surface, nearest) = await asyncio.gather(
+                self.detect(frame, words, onboard), asyncio.to_thread(self._seen, frame)
+            )
         return DetectionBatch(
             frame_id=frame.frame_id,
             timestamp_ns=frame.timestamp_ns,

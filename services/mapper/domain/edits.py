@@ -163,6 +163,7 @@ def _parted(table: ObjectTable, record: ObjectRecord, inside: Bools, label: str)
         moves=(),
         relations=(),
         settled=None,
+        related=None,
         watched=0,
         slot=-1,
         read=None,
@@ -174,7 +175,7 @@ def _parted(table: ObjectTable, record: ObjectRecord, inside: Bools, label: str)
     record.label_counts = {name: _shared(n, 1 - share) for name, n in record.label_counts.items()}
     record.observations = _shared(record.observations, 1 - share)
     record.second_sum = record.second_sum * (1 - share)
-    record.evidence, record.settled, record.watched = None, None, 0
+    record.evidence, record.settled, record.related, record.watched = None, None, None, 0
     record.recount()
     table.set_feature_sum(record, whole * (1 - share))
     table.set_cloud(record, record.cloud.kept(~inside))

@@ -114,6 +114,7 @@ def _arrival(record: ObjectRecord, pose: F64, size: float, batches: int, version
         moves=moves,
         relations=(),
         settled=None,
+        related=None,
         watched=0,
         slot=-1,
         read=None,

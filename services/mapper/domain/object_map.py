@@ -28,14 +28,14 @@ from services.mapper.domain.fusion import fusion_weight
 from services.mapper.domain.joining import join_maps
 from services.mapper.domain.objects import ObjectTable
 from services.mapper.domain.params import MapParams
-from services.mapper.domain.records import Changes, ObjectRecord, added, remembered
+from services.mapper.domain.records import Changes, Extent, ObjectRecord, added, remembered
 from services.mapper.domain.snapshot import Head, read_segments, record_digest, write_head, write_segment
 from services.mapper.domain.spatial import Spatial
 from services.mapper.domain.surroundings import recognise_moves, relate, watch
 from services.mapper.domain.upkeep import denoised
 
-_SETTLED_SHARE = 0.02  # of a cloud's voxels, and
-_SETTLED_METRES = 0.01  # of its box: what changed less since the last upkeep needs none
+_CLEAN = 0.05, 0.01  # a share of its cloud's voxels, and metres of its box: what changed less is clean still,
+_RELATED = 0.1, 0.02  # and stands to others as it did
 
 
 class ObjectMap:
@@ -89,17 +89,14 @@ class ObjectMap:
 
     def upkeep(self) -> MapDelta:
         """Denoises what changed since the last upkeep, merges duplicates, drops noise, relates (SPEC 2.6, 2.8, 2.9)."""
-        changes = self._begin()
+        changes, table = self._begin(), self.table
         self.upkept_batches = self.batches
-        self._denoise(self._unsettled())
-        merge_duplicates(self.table, self.table.dirty, self.params.upkeep)
+        self._denoise([r for r in self._changed() if self._outgrew(r, r.settled, *_CLEAN)])
+        merge_duplicates(table, table.dirty, self.params.upkeep)
         self._forget_noise()
-        recognise_moves(self.table, self.params)
-        relate(self.table, self._unsettled(), self.params)
-        for record in filter(None, map(self.table.get, self.table.dirty)):
-            record.settled, record.fresh = (len(record.cloud), self.table.box(record)), None
-            self.table.touch(record, seen=False)
-        self.table.dirty.clear()
+        recognise_moves(table, self.params)
+        self._relate([r for r in self._changed() if self._outgrew(r, r.related, *_RELATED)])
+        table.dirty.clear()
         return changes.delta(StepKind.UPKEEP)
 
     def edit(self, request: EditRequest) -> MapDelta:
@@ -314,23 +311,31 @@ class ObjectMap:
             seen.append(record.object_id)
         return set(seen)
 
-    def _unsettled(self) -> list[ObjectRecord]:
-        """What changed noticeably since upkeep last looked at it, in order of birth."""
-        records = [r for name in self.table.dirty if (r := self.table.get(name)) is not None]
-        return sorted((r for r in records if not self._is_settled(r)), key=lambda r: r.birth)
+    def _changed(self) -> list[ObjectRecord]:
+        """What changed since the last upkeep, in order of birth."""
+        return sorted(filter(None, map(self.table.get, self.table.dirty)), key=lambda r: r.birth)
 
-    def _is_settled(self, record: ObjectRecord) -> bool:
-        if record.settled is None:
-            return False
-        voxels, box = record.settled
-        grown = abs(len(record.cloud) - voxels) > _SETTLED_SHARE * voxels
-        return not grown and bool((np.abs(self.table.box(record) - box) <= _SETTLED_METRES).all())
+    def _outgrew(self, record: ObjectRecord, then: Extent | None, share: float, metres: float) -> bool:
+        """Whether the cloud's size or box is no more what it was, but for a share of the one, metres of the other."""
+        if then is None:
+            return True
+        voxels, box = then
+        grown = abs(len(record.cloud) - voxels) > share * voxels
+        return grown or bool((np.abs(self.table.box(record) - box) > metres).any())
 
     def _denoise(self, records: Sequence[ObjectRecord]) -> None:
         clean = denoised([r.cloud for r in records], self.params.upkeep)
         for record, cloud in zip(records, clean, strict=True):
             if len(cloud) < len(record.cloud):
                 self.table.set_cloud(record, cloud)
+            record.settled = (len(record.cloud), self.table.box(record))
+            self.table.touch(record, seen=False)
+
+    def _relate(self, records: Sequence[ObjectRecord]) -> None:
+        relate(self.table, records, self.params)
+        for record in records:
+            record.related, record.fresh = (len(record.cloud), self.table.box(record)), None
+            self.table.touch(record, seen=False)
 
     def _forget_noise(self) -> None:
         """Unconfirmed objects that were not seen again for a while were noise."""

@@ -189,7 +189,7 @@ class ObjectTable:
 
     def unsettle(self, record: ObjectRecord) -> None:
         """Upkeep is to look at the object, and at what is around it, whatever it knew."""
-        record.settled = None
+        record.settled = record.related = None
         self._note_fresh(record, self.box(record))
         self.dirty.add(record.object_id)
         self.touch(record, seen=False)
@@ -230,8 +230,13 @@ class ObjectTable:
         """`keep` absorbs `gone`, which becomes an alias of it. cloud: the survivor's, where that is not both's."""
         feature_sum = self.feature_sum(gone)
         self._forget(gone)
-        self.aliases[gone.object_id] = keep.object_id
-        self.changes.aliases[gone.object_id] = keep.object_id
+        if gone.object_id in self.changes.created and gone.object_id not in self.changes.aliases.values():
+            # born in this step: nobody will have known of it
+            self.changes.created.remove(gone.object_id)
+            self.changes.updated.discard(gone.object_id)
+        else:
+            self.aliases[gone.object_id] = keep.object_id
+            self.changes.aliases[gone.object_id] = keep.object_id
         self.absorb(keep, gone, feature_sum, cloud or keep.cloud.merged(gone.cloud))
         for name in sorted(gone.apart):
             if (other := self.get(name)) is not None:
@@ -257,7 +262,7 @@ class ObjectTable:
         for label, count in gone.label_counts.items():
             self.count_label(keep, label, count)
         self.set_cloud(keep, cloud, gone.cloud.box)
-        keep.evidence = keep.settled = None
+        keep.evidence = keep.settled = keep.related = None
         if gone.presence is Presence.PRESENT:
             keep.presence = Presence.PRESENT
         self.revise(keep)

@@ -25,16 +25,21 @@ FRAMES_REMEMBERED = 32
 _NO_SECOND = np.zeros(0)
 
 
+Extent = tuple[int, F64]
+"""A cloud's number of voxels, and its box `(6,)`."""
+
+
 @dataclass(slots=True)
 class ObjectRecord:
     """One object, the paper's o_j: everything but its box and its feature sum, which the table holds as rows.
 
     view_weight: Omega_j. label_counts: C_j, labels in the order they came. second_sum `(E,)`: the second encoder's
-    feature sum. seen_by: the last frames that saw it, by number. settled: its cloud's size and box when upkeep last
-    looked; fresh: the box of what was added since. watched: its cloud's size when its evidence was made.
-    given_label: an operator's. deleted: the version at which an operator said it is not there, else 0. apart: ids that
-    an operator said are other things. touched: the version of any change, version: of one that readers see, revision:
-    of one that an edit must know of. The last ones are kept to be quick: slot, mode(C_j), and what was made of it.
+    feature sum. seen_by: the last frames that saw it, by number. settled, related: its cloud's size and box when upkeep
+    last cleaned it, and last measured its relations; fresh: the box of what was added since that. watched: its cloud's
+    size when its evidence was made. given_label: an operator's. deleted: the version at which an operator said it is
+    not there, else 0. apart: ids that an operator said are other things. touched: the version of any change, version:
+    of one that readers see, revision: of one that an edit must know of. The last ones are kept to be quick: slot,
+    mode(C_j), and what was made of it.
     """
 
     object_id: str
@@ -59,7 +64,8 @@ class ObjectRecord:
     evidence: Evidence | None = None
     moves: tuple[Move, ...] = ()
     relations: tuple[Relation, ...] = ()
-    settled: tuple[int, F64] | None = None
+    settled: Extent | None = None
+    related: Extent | None = None
     fresh: F64 | None = None
     watched: int = 0
     touched: int = 0

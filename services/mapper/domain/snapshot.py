@@ -18,7 +18,7 @@ from services.mapper.domain.cloud import VoxelCloud
 from services.mapper.domain.objects import ObjectTable
 from services.mapper.domain.params import MapParams, params_json, params_of
 from services.mapper.domain.presence import Evidence
-from services.mapper.domain.records import ObjectRecord
+from services.mapper.domain.records import Extent, ObjectRecord
 
 FORMAT = 2
 _MAGIC = b"OVIPMAP\n"
@@ -103,21 +103,22 @@ def read_segments(segments: Sequence[bytes]) -> tuple[Head, ObjectTable]:
     return head, table
 
 
-_ARRAYS = {"cloud", "second_sum", "evidence", "settled", "fresh"}
+_ARRAYS = {"cloud", "second_sum", "evidence", "settled", "related", "fresh"}
 _CACHES = {"slot", "mode", "read", "digest", "body"}
 _PLAIN = [f.name for f in dataclasses.fields(ObjectRecord) if f.name not in _ARRAYS | _CACHES]
 
 
 def _plain(record: ObjectRecord) -> dict[str, Any]:
     plain = {name: getattr(record, name) for name in _PLAIN}
-    box2, settled, evidence = record.best_box2, record.settled, record.evidence
+    box2, evidence = record.best_box2, record.evidence
     return {
         **plain,
         "best_box2": [box2.x0, box2.y0, box2.x1, box2.y1],
         "apart": sorted(record.apart),
         "moves": [[move.timestamp_ns, move.origin.tolist()] for move in record.moves],
         "relations": [[r.kind, r.other_id, r.evidence] for r in record.relations],
-        "settled": [settled[0], settled[1].tolist()] if settled else None,
+        "settled": _extent(record.settled),
+        "related": _extent(record.related),
         "fresh": None if record.fresh is None else record.fresh.tolist(),
         "size": record.cloud.size,
         "level": record.cloud.level,
@@ -177,7 +178,6 @@ class _Reader:
         if samples >= 0:
             points = self._array(np.float32, 3 * samples).reshape(samples, 3)
             evidence = Evidence(points, self._array(np.int8, samples))
-        settled = plain["settled"]
         values = {name: plain[name] for name in _PLAIN}
         values |= {
             "seen_by": tuple(plain["seen_by"]),
@@ -189,7 +189,8 @@ class _Reader:
                 Relation(RelationKind(kind), other, evidence_of)
                 for kind, other, evidence_of in plain["relations"]
             ),
-            "settled": (settled[0], np.array(settled[1])) if settled else None,
+            "settled": _extent_of(plain["settled"]),
+            "related": _extent_of(plain["related"]),
             "fresh": np.array(plain["fresh"]) if plain["fresh"] else None,
         }
         record = ObjectRecord(cloud=cloud, second_sum=second, evidence=evidence, **values)
@@ -216,6 +217,14 @@ class _Reader:
             raise Corrupt(f"map snapshot: expected at least {self._at + count} bytes, got {len(self._data)}")
         self._at += count
         return self._data[self._at - count : self._at]
+
+
+def _extent(extent: Extent | None) -> list[Any] | None:
+    return [extent[0], extent[1].tolist()] if extent else None
+
+
+def _extent_of(plain: list[Any] | None) -> Extent | None:
+    return (plain[0], np.array(plain[1])) if plain else None
 
 
 def _json(plain: Any) -> bytes:

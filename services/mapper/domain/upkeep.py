@@ -11,8 +11,11 @@ from scipy.spatial import cKDTree
 from ovip.scene.boxes import pair_intersection, volume
 from ovip.scene.clusters import cell_clusters
 from ovip.scene.types import F64, I64
-from ovip.scene.voxels import voxel_cells
+from ovip.scene.voxels import pack_cells, voxel_cells
 from services.mapper.domain.cloud import VoxelCloud
+
+_BLOCK = 2  # bits of a cell: voxels are beside one another in blocks of four a side
+_TAIL = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +42,7 @@ class UpkeepParams:
     merge_inside: float = 0.7
     merge_ratio: float = 0.1
     merge_similarity: float = 0.85
-    merge_mutual: float = 0.5
+    merge_mutual: float = 0.25
     merge_veto: float = 0.3
     reach: float = 0.04
     confirm_frames: int = 3
@@ -102,8 +105,19 @@ def _share_on(points: F64, others: F64, reach: float) -> float:
 
 
 def _seen_again(cloud: VoxelCloud) -> VoxelCloud:
-    often = cloud.counts > 1
-    return cloud.kept(often) if often.mean() > 0.5 else cloud
+    """Without voxels seen once, where most were not; nor what was seen a hundredth as often as what is beside it.
+
+    The tails of noise and drift would thicken a surface for as long as it is looked at.
+    """
+    counts = cloud.counts
+    often = counts > 1
+    keep = often if often.mean() > 0.5 else np.ones(len(counts), bool)
+    if counts.max() > _TAIL:
+        blocks, block = np.unique(pack_cells(voxel_cells(cloud.keys) >> _BLOCK), return_inverse=True)
+        most = np.zeros(len(blocks), np.int32)
+        np.maximum.at(most, block, counts)
+        keep = keep & (counts * _TAIL >= most[block])
+    return cloud if keep.all() else cloud.kept(keep)
 
 
 def _cells(cloud: VoxelCloud, params: UpkeepParams) -> I64:

@@ -11,7 +11,7 @@ from ovip.scene.types import F32, Detection
 from services.mapper.domain.duplicates import merge_duplicates
 from services.mapper.domain.object_map import ObjectMap
 from services.mapper.domain.params import MapParams
-from services.mapper.domain.records import ObjectRecord
+from services.mapper.domain.records import Changes, ObjectRecord
 from services.mapper.domain.upkeep import UpkeepParams
 from tests.builders import axis, batch, detection, leaning
 
@@ -32,6 +32,7 @@ def _halves(first: Detection, second: Detection) -> tuple[ObjectMap, ObjectRecor
 
 
 def _left(made: ObjectMap) -> list[str]:
+    made.table.changes = Changes(made.version + 1)  # a step of its own
     merge_duplicates(made.table, made.table.dirty.copy(), PATIENT.upkeep)
     return [r.object_id for r in made.table]
 

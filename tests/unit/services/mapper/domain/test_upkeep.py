@@ -110,3 +110,20 @@ def test_flat_boxes_have_the_thickness_of_the_slack() -> None:
 
 def _box(corners: Sequence[float]) -> F64:
     return np.array(corners, np.float64)
+
+
+def test_the_tail_of_noise_beside_what_was_seen_a_hundred_times_as_often_goes() -> None:
+    """Drift of centimetres reaches a second count in the end; a side seen lately lies elsewhere and stays."""
+    tail = np.array([[0.131, 0.01, 0.01]], np.float32)
+    lately = block((0.01, 0.41, 0.01), (0.11, 0.51, 0.11), 0.02)
+    cloud = _cloud(_cup(), _cup(), tail, tail, lately, lately)
+    often = _cloud(_cup())
+    for _ in range(8):
+        often = often.merged(often)  # 256 times in the end
+    cloud = cloud.merged(often)
+
+    clean = _denoised(cloud)
+
+    assert clean.counts.max() > 200
+    assert clean.box[3] == pytest.approx(0.11, abs=0.01)
+    assert clean.box[4] == pytest.approx(0.51, abs=0.01)
