@@ -81,9 +81,11 @@ class VoxelCloud:
     @property
     def box(self) -> F64:
         """`(6,)` around the voxels' mean points: those of the outermost voxels."""
+        x, y, z = voxel_columns(self.keys)
         box = np.empty(6)
-        for axis, column in enumerate(voxel_columns(self.keys)):
-            for side, outermost, most in ((0, column.min(), np.min), (3, column.max(), np.max)):
+        for axis, column, ascending in ((0, x, True), (1, y, False), (2, z, False)):
+            low, high = (column[0], column[-1]) if ascending else (column.min(), column.max())
+            for side, outermost, most in ((0, low, np.min), (3, high, np.max)):
                 rim = self.tally.take(np.flatnonzero(column == outermost), axis=0)
                 inside = most(rim[:, 1 + axis] / rim[:, 0] + 0.5) * (self.size / _STEPS)
                 box[side + axis] = outermost * self.edge + inside
