@@ -9,6 +9,16 @@ from typing import Any
 import structlog
 
 
+class _StandardError:
+    """Whatever standard error is when something is said; it may be another than at the start, or that one closed."""
+
+    def write(self, text: str) -> int:
+        return sys.stderr.write(text)
+
+    def flush(self) -> None:
+        sys.stderr.flush()
+
+
 def configure_logging(level: str, as_json: bool) -> None:
     """Once, at the start of a process: events go to standard error."""
     renderer: Any = (
@@ -23,7 +33,7 @@ def configure_logging(level: str, as_json: bool) -> None:
             renderer,
         ],
         wrapper_class=structlog.make_filtering_bound_logger(getattr(logging, level.upper())),
-        logger_factory=structlog.PrintLoggerFactory(sys.stderr),
+        logger_factory=structlog.PrintLoggerFactory(_StandardError()),  # type: ignore[arg-type]
         cache_logger_on_first_use=False,
     )
 

@@ -19,20 +19,22 @@ CURSOR = "cursor"
 
 @contextlib.asynccontextmanager
 async def spoken() -> AsyncIterator[None]:
-    """Turns the client library's errors into ours, and never lets it swallow a cancellation (its wait_for can).
+    """Turns the client library's errors into ours, and never lets it swallow a cancellation.
 
-    Only one that came meanwhile: what a cancelled task says on its way out still goes through.
+    Its wait_for can, and so can what it does about a lost connection: a service would go on trying for ever after it
+    was told to stop. Only one that came meanwhile: what a cancelled task says on its way out still goes through.
     """
     task = asyncio.current_task()
     cancelled_before = task.cancelling() if task else 0
     try:
         yield
-        if task and task.cancelling() > cancelled_before:
-            raise asyncio.CancelledError
-    except (RedisConnectionError, RedisTimeoutError) as error:
-        raise Unavailable(f"the store cannot be reached: {error}") from error
     except RedisError as error:
-        raise Unavailable(f"the store refused: {error}") from error
+        if task and task.cancelling() > cancelled_before:
+            raise asyncio.CancelledError from error
+        lost = isinstance(error, RedisConnectionError | RedisTimeoutError)
+        raise Unavailable(f"the store {'cannot be reached' if lost else 'refused'}: {error}") from error
+    if task and task.cancelling() > cancelled_before:
+        raise asyncio.CancelledError
 
 
 def cursor_field(name: str) -> str:

@@ -40,7 +40,7 @@ class Settings(KernelSettings):
     )
     snapshot_every: int = Field(50, ge=1, description="map versions between snapshots")
     settle_after_s: float = Field(
-        30.0, gt=0, description="seconds without a frame after which the last ones get their upkeep"
+        0.0, ge=0, description="seconds without a frame after which the last ones get their upkeep; 0: never"
     )
 
     @property

@@ -38,7 +38,7 @@ class Mapper:
         store: Store,
         params: MapParams,
         snapshot_every: int = 50,
-        settle_after_s: float = 30.0,
+        settle_after_s: float = 0.0,
         answer_within_s: float = 20.0,
         aligner: Aligner | None = None,
     ) -> None:

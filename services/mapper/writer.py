@@ -37,10 +37,14 @@ log = get_logger("mapper")
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """snapshot_every: versions between snapshots. settle_after_s: idle seconds after which upkeep looks at the rest."""
+    """snapshot_every: versions between snapshots.
+
+    settle_after_s: idle seconds after which upkeep looks at the rest; 0: never, so that the same frames give the same
+    map to the bit however long a robot pauses between them.
+    """
 
     snapshot_every: int = 50
-    settle_after_s: float = 30.0
+    settle_after_s: float = 0.0
 
 
 class Writer:
@@ -94,7 +98,8 @@ class _Following:
                 for entry in found[stream]:
                     await self._take_in(stream, entry)
                     after[stream], idle_since = entry.id, clock()
-            if self._unsettled and clock() - idle_since >= self._pace.settle_after_s:
+            idle = clock() - idle_since
+            if self._unsettled and 0 < self._pace.settle_after_s <= idle:
                 await self._take_step(UpkeepInput())
 
     async def _take_in(self, stream: str, entry: Entry) -> None:
