@@ -35,7 +35,7 @@ def watch(table: ObjectTable, batch: DetectionBatch, seen: set[str], params: Map
     unseen = [r for r in table.near(box) if r.object_id not in seen and _is_watched(r, params)]
     if not unseen:
         return
-    evidence = [_evidence_of(record) for record in unseen]
+    evidence = [_evidence_of(table, record) for record in unseen]
     sizes = [len(e.points) for e in evidence]
     owners = np.repeat(np.arange(len(evidence)), sizes)
     said = sight(np.concatenate([e.points for e in evidence]), owners, view, params.presence)
@@ -137,14 +137,16 @@ def _is_related(record: ObjectRecord, params: MapParams) -> bool:
     return record.is_confirmed(params.upkeep.confirm_frames)
 
 
-def _evidence_of(record: ObjectRecord) -> Evidence:
+def _evidence_of(table: ObjectTable, record: ObjectRecord) -> Evidence:
     """What is watched of the object: chosen anew when it has grown much."""
-    if record.evidence is None:
-        record.evidence, record.watched = Evidence.of(record.cloud.points), len(record.cloud)
-    elif not record.watched / _WATCHED_GROWTH <= len(record.cloud) <= record.watched * _WATCHED_GROWTH:
-        record.evidence = record.evidence.renewed(record.cloud.points)
-        record.watched = len(record.cloud)
-    return record.evidence
+    known, voxels = record.evidence, len(record.cloud)
+    if known and record.watched / _WATCHED_GROWTH <= voxels <= record.watched * _WATCHED_GROWTH:
+        return known
+    points = record.cloud.points
+    made = known.renewed(points) if known else Evidence.of(points)
+    record.evidence, record.watched = made, voxels
+    table.touch(record, seen=False)
+    return made
 
 
 def _looks(table: ObjectTable, records: Sequence[ObjectRecord]) -> Looks:

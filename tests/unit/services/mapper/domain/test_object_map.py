@@ -495,6 +495,34 @@ def test_segments_of_what_changed_make_the_whole_map(seed: int, cuts: list[int])
     assert again.aliases == made.aliases
 
 
+@given(SEEDS, st.lists(st.booleans(), min_size=40, max_size=40))
+@SETTINGS
+def test_looking_at_a_map_and_writing_it_down_on_the_way_changes_no_bit_of_it(
+    seed: int, looks: list[bool]
+) -> None:
+    """With frames that see through things: what is watched of them is state, too."""
+    rng = np.random.default_rng(seed)
+    run = [
+        dataclasses.replace(
+            one, nearest=rng.uniform(0, 4, (12, 16)).astype(np.float32) * (rng.random() < 0.7)
+        )
+        for one in random_run(seed, 40)
+    ]
+    left_alone, looked_at, segments, since = ObjectMap(BUSY), ObjectMap(BUSY), list[bytes](), 0
+    for one, look in zip(run, looks, strict=True):
+        _step(left_alone, one)
+        _step(looked_at, one)
+        if look:
+            looked_at.state_hash()
+            looked_at.objects(include_unconfirmed=True, include_departed=True)
+            segments.append(looked_at.segment(since))
+            since = looked_at.version
+    segments.append(looked_at.segment(since))
+
+    assert looked_at.state_hash() == left_alone.state_hash()
+    assert ObjectMap.restore(segments).state_hash() == left_alone.state_hash()
+
+
 def test_a_segment_tells_only_what_changed() -> None:
     many = [detection("cup", (3.0 * i, 0, 0), (3.0 * i + 0.2, 0.2, 0.2)) for i in range(40)]
     made = _map_of(batch(1, *many))
