@@ -212,9 +212,7 @@ async def test_two_replicas_that_write_in_turn_and_read_always_agree(
             newest = await write(store, some)
             here, there = await applied(one, newest), await applied(other, newest)
             async with asyncio.timeout(10):
-                while (
-                    here.version != there.version
-                ):  # one of them may have been asked before a frame's upkeep
+                while not here.version == there.version == (await versions_in(store))[-1]:
                     here, there = await one.get_map(SCENE), await other.get_map(SCENE)
             assert here.state_hash == there.state_hash
             if n == 1:  # the writer's lease is taken away
