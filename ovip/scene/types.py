@@ -140,9 +140,10 @@ class MapObject:
     """One mapped object, the paper's o_j, as readers see it.
 
     centroid: `(3,)`; box: `(6,)` low then high, world metres. feature: `(D,)` unit. mean_color: `(3,)` RGB 0..255.
-    frames: different frames that saw it. version: the map's, when anything of it last changed; revision: the map's,
-    when last it was born, renamed, merged, split, moved, given up or edited (what an operator's edit must know of).
-    pinned: upkeep leaves it alone. label_given: its label is an operator's.
+    frames: different frames that saw it; of parts that merge, those before the last 32 of either may count twice.
+    version: the map's, when anything of it last changed; revision: the map's, when last it was born, renamed, merged,
+    split, moved, given up or edited (what an operator's edit must know of). pinned: upkeep leaves it alone.
+    label_given: its label is an operator's.
     """
 
     object_id: str
