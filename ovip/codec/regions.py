@@ -2,14 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TypeVar
+
 import numpy as np
 
 from ovip.codec.geometry import polygon_message, polygon_value, vector_message, vector_value
 from ovip.codec.reading import parsed
 from ovip.errors import Corrupt
 from ovip.scene.grid import FloorGrid
-from ovip.scene.types import Floor, Partition, Region, RegionEdge
+from ovip.scene.types import (
+    EdgeKind,
+    Floor,
+    Frontier,
+    Partition,
+    Region,
+    RegionEdge,
+    RegionEvent,
+    RegionEventKind,
+)
 from ovip.v1 import regions_pb2
+
+K = TypeVar("K")
+_EDGES = {
+    EdgeKind.OPENING: regions_pb2.REGION_EDGE_KIND_OPENING,
+    EdgeKind.DOORWAY: regions_pb2.REGION_EDGE_KIND_DOORWAY,
+    EdgeKind.STAIRS: regions_pb2.REGION_EDGE_KIND_STAIRS,
+}
+_EVENTS = {
+    RegionEventKind.APPEARED: regions_pb2.REGION_EVENT_KIND_APPEARED,
+    RegionEventKind.VANISHED: regions_pb2.REGION_EVENT_KIND_VANISHED,
+    RegionEventKind.RETYPED: regions_pb2.REGION_EVENT_KIND_RETYPED,
+    RegionEventKind.RESHAPED: regions_pb2.REGION_EVENT_KIND_RESHAPED,
+}
 
 
 def partition_message(p: Partition) -> regions_pb2.Partition:
@@ -32,14 +57,28 @@ def partition_message(p: Partition) -> regions_pb2.Partition:
                 holes=[polygon_message(ring) for ring in r.holes],
                 object_ids=r.object_ids,
                 frame_ids=r.frame_ids,
+                seen_by=r.seen_by,
             )
             for r in p.regions
         ],
-        edges=[
-            regions_pb2.RegionEdge(a=e.a, b=e.b, width=e.width, position=vector_message(e.position))
-            for e in p.edges
-        ],
+        edges=[edge_message(edge) for edge in p.edges],
         fallbacks=p.fallbacks,
+        frontiers=[
+            regions_pb2.Frontier(
+                floor=f.floor, region_id=f.region_id, position=vector_message(f.position), width=f.width
+            )
+            for f in p.frontiers
+        ],
+        events=[
+            regions_pb2.RegionEvent(
+                kind=_EVENTS[e.kind],
+                region_id=e.region_id,
+                floor=e.floor,
+                display_name=e.display_name,
+                other=e.other,
+            )
+            for e in p.events
+        ],
     )
 
 
@@ -60,11 +99,43 @@ def partition_value(m: regions_pb2.Partition) -> Partition:
                 holes=tuple(polygon_value(ring) for ring in r.holes),
                 object_ids=tuple(r.object_ids),
                 frame_ids=tuple(r.frame_ids),
+                seen_by=tuple(r.seen_by),
             )
             for r in m.regions
         ),
-        edges=tuple(RegionEdge(e.a, e.b, e.width, vector_value(e.position)) for e in m.edges),
+        edges=tuple(edge_value(edge) for edge in m.edges),
         fallbacks=tuple(m.fallbacks),
+        frontiers=tuple(
+            Frontier(f.floor, f.region_id, vector_value(f.position), f.width) for f in m.frontiers
+        ),
+        events=tuple(
+            RegionEvent(
+                _known(_EVENTS, e.kind, "region event"), e.region_id, e.floor, e.display_name, e.other
+            )
+            for e in m.events
+        ),
+    )
+
+
+def edge_message(e: RegionEdge) -> regions_pb2.RegionEdge:
+    return regions_pb2.RegionEdge(
+        a=e.a,
+        b=e.b,
+        width=e.width,
+        position=vector_message(e.position),
+        kind=_EDGES[e.kind],
+        upper=None if e.upper is None else vector_message(e.upper),
+    )
+
+
+def edge_value(m: regions_pb2.RegionEdge) -> RegionEdge:
+    return RegionEdge(
+        m.a,
+        m.b,
+        m.width,
+        vector_value(m.position),
+        _known(_EDGES, m.kind, "region edge"),
+        vector_value(m.upper) if m.HasField("upper") else None,
     )
 
 
@@ -112,3 +183,10 @@ def encode_floor_grid(g: FloorGrid) -> bytes:
 
 def decode_floor_grid(data: bytes) -> FloorGrid:
     return floor_grid_value(parsed(regions_pb2.GetFloorGridResponse, data))
+
+
+def _known(names: Mapping[K, int], number: int, what: str) -> K:
+    for name, value in names.items():
+        if value == number:
+            return name
+    raise Corrupt(f"{what}: kind {number} is none of {', '.join(str(name) for name in names)}")

@@ -215,7 +215,10 @@ class MapDelta:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """One functional floor region. outlines, holes: tuples of `(N, 2)` world metres, open rings."""
+    """One functional floor region. outlines, holes: tuples of `(N, 2)` world metres, open rings.
+
+    frame_ids: taken in it. seen_by: the frames that see most of its floor, best first.
+    """
 
     region_id: str
     floor: int
@@ -227,16 +230,41 @@ class Region:
     holes: tuple[F64, ...]
     object_ids: tuple[str, ...]
     frame_ids: tuple[str, ...]
+    seen_by: tuple[str, ...] = ()
+
+
+class EdgeKind(StrEnum):
+    """How two regions are joined: by a border without a wall, a passage as narrow as a door, or stairs."""
+
+    OPENING = "opening"
+    DOORWAY = "doorway"
+    STAIRS = "stairs"
 
 
 @dataclass(frozen=True, slots=True)
 class RegionEdge:
-    """Two regions that touch, and the opening between them. position: `(3,)` metres; width in metres."""
+    """Two regions that touch, and the opening between them. position: `(3,)` metres; width in metres.
+
+    Stairs join regions of two floors: `position` is their foot, in `a`, and `upper` `(3,)` their head, in `b`.
+    """
 
     a: str
     b: str
     width: float
     position: F64
+    kind: EdgeKind = EdgeKind.OPENING
+    upper: F64 | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Frontier:
+    """Where the floor that was seen ends at what never was. position: `(3,)` metres, its middle, on seen floor;
+    width: metres along it; region_id: "" where that floor belongs to none."""
+
+    floor: int
+    region_id: str
+    position: F64
+    width: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,9 +277,36 @@ class Floor:
     area: float
 
 
+class RegionEventKind(StrEnum):
+    """What became of a region. RESHAPED: its floor changed by more than a tenth."""
+
+    APPEARED = "appeared"
+    VANISHED = "vanished"
+    RETYPED = "retyped"
+    RESHAPED = "reshaped"
+
+
+@dataclass(frozen=True, slots=True)
+class RegionEvent:
+    """What became of one region from one partition to the next.
+
+    display_name: now; of a vanished one, its last. other: of an appeared one, the region that most of its floor
+    belonged to; of a vanished one, the region that most of it belongs to now; "" for none.
+    """
+
+    kind: RegionEventKind
+    region_id: str
+    floor: int
+    display_name: str
+    other: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Partition:
-    """The floors of a scene cut into regions, and the map version they were cut from."""
+    """The floors of a scene cut into regions, and the map version they were cut from.
+
+    events: what changed since the revision before.
+    """
 
     map_version: int
     revision: int
@@ -259,3 +314,5 @@ class Partition:
     regions: tuple[Region, ...] = ()
     edges: tuple[RegionEdge, ...] = ()
     fallbacks: tuple[str, ...] = ()
+    frontiers: tuple[Frontier, ...] = ()
+    events: tuple[RegionEvent, ...] = ()

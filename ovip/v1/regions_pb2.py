@@ -25,37 +25,57 @@ _sym_db = _symbol_database.Default()
 from ovip.v1 import types_pb2 as ovip_dot_v1_dot_types__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x15ovip/v1/regions.proto\x12\x07ovip.v1\x1a\x13ovip/v1/types.proto\"\xf0\x01\n\x06Region\x12\x11\n\tregion_id\x18\x01 \x01(\t\x12\r\n\x05\x66loor\x18\x02 \x01(\r\x12\x10\n\x08\x66unction\x18\x03 \x01(\t\x12\x14\n\x0c\x64isplay_name\x18\x04 \x01(\t\x12\x0c\n\x04\x61rea\x18\x05 \x01(\x01\x12\"\n\x08\x63\x65ntroid\x18\x06 \x01(\x0b\x32\x10.ovip.v1.Vector3\x12\"\n\x08outlines\x18\x07 \x03(\x0b\x32\x10.ovip.v1.Polygon\x12\x1f\n\x05holes\x18\x08 \x03(\x0b\x32\x10.ovip.v1.Polygon\x12\x12\n\nobject_ids\x18\t \x03(\t\x12\x11\n\tframe_ids\x18\n \x03(\t\"U\n\nRegionEdge\x12\t\n\x01\x61\x18\x01 \x01(\t\x12\t\n\x01\x62\x18\x02 \x01(\t\x12\r\n\x05width\x18\x03 \x01(\x01\x12\"\n\x08position\x18\x04 \x01(\x0b\x32\x10.ovip.v1.Vector3\"I\n\x0c\x46loorSummary\x12\r\n\x05\x66loor\x18\x01 \x01(\r\x12\t\n\x01z\x18\x02 \x01(\x01\x12\x11\n\tceiling_z\x18\x03 \x01(\x01\x12\x0c\n\x04\x61rea\x18\x04 \x01(\x01\"\xb2\x01\n\tPartition\x12\x13\n\x0bmap_version\x18\x01 \x01(\x04\x12\x10\n\x08revision\x18\x02 \x01(\x04\x12%\n\x06\x66loors\x18\x03 \x03(\x0b\x32\x15.ovip.v1.FloorSummary\x12 \n\x07regions\x18\x04 \x03(\x0b\x32\x0f.ovip.v1.Region\x12\"\n\x05\x65\x64ges\x18\x05 \x03(\x0b\x32\x13.ovip.v1.RegionEdge\x12\x11\n\tfallbacks\x18\x06 \x03(\t\"\"\n\x11GetRegionsRequest\x12\r\n\x05scene\x18\x01 \x01(\t\";\n\x12GetRegionsResponse\x12%\n\tpartition\x18\x01 \x01(\x0b\x32\x12.ovip.v1.Partition\"!\n\x10RecomputeRequest\x12\r\n\x05scene\x18\x01 \x01(\t\":\n\x11RecomputeResponse\x12%\n\tpartition\x18\x01 \x01(\x0b\x32\x12.ovip.v1.Partition\"<\n\x13WatchRegionsRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12\x16\n\x0e\x61\x66ter_revision\x18\x02 \x01(\x04\"=\n\x14WatchRegionsResponse\x12%\n\tpartition\x18\x01 \x01(\x0b\x32\x12.ovip.v1.Partition\"3\n\x13GetFloorGridRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12\r\n\x05\x66loor\x18\x02 \x01(\r\"\xc6\x01\n\x14GetFloorGridResponse\x12\r\n\x05\x66loor\x18\x01 \x01(\r\x12\x10\n\x08origin_x\x18\x02 \x01(\x01\x12\x10\n\x08origin_y\x18\x03 \x01(\x01\x12\x12\n\nresolution\x18\x04 \x01(\x01\x12\x0c\n\x04rows\x18\x05 \x01(\r\x12\x0f\n\x07\x63olumns\x18\x06 \x01(\r\x12\x11\n\toccupancy\x18\x07 \x01(\x0c\x12\x0f\n\x07regions\x18\x08 \x01(\x0c\x12\x12\n\nregion_ids\x18\t \x03(\t\x12\x10\n\x08revision\x18\n \x01(\x04\x32\xb7\x02\n\x0eRegionsService\x12\x45\n\nGetRegions\x12\x1a.ovip.v1.GetRegionsRequest\x1a\x1b.ovip.v1.GetRegionsResponse\x12\x42\n\tRecompute\x12\x19.ovip.v1.RecomputeRequest\x1a\x1a.ovip.v1.RecomputeResponse\x12M\n\x0cWatchRegions\x12\x1c.ovip.v1.WatchRegionsRequest\x1a\x1d.ovip.v1.WatchRegionsResponse0\x01\x12K\n\x0cGetFloorGrid\x12\x1c.ovip.v1.GetFloorGridRequest\x1a\x1d.ovip.v1.GetFloorGridResponseb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x15ovip/v1/regions.proto\x12\x07ovip.v1\x1a\x13ovip/v1/types.proto\"\x81\x02\n\x06Region\x12\x11\n\tregion_id\x18\x01 \x01(\t\x12\r\n\x05\x66loor\x18\x02 \x01(\r\x12\x10\n\x08\x66unction\x18\x03 \x01(\t\x12\x14\n\x0c\x64isplay_name\x18\x04 \x01(\t\x12\x0c\n\x04\x61rea\x18\x05 \x01(\x01\x12\"\n\x08\x63\x65ntroid\x18\x06 \x01(\x0b\x32\x10.ovip.v1.Vector3\x12\"\n\x08outlines\x18\x07 \x03(\x0b\x32\x10.ovip.v1.Polygon\x12\x1f\n\x05holes\x18\x08 \x03(\x0b\x32\x10.ovip.v1.Polygon\x12\x12\n\nobject_ids\x18\t \x03(\t\x12\x11\n\tframe_ids\x18\n \x03(\t\x12\x0f\n\x07seen_by\x18\x0b \x03(\t\"\x9d\x01\n\nRegionEdge\x12\t\n\x01\x61\x18\x01 \x01(\t\x12\t\n\x01\x62\x18\x02 \x01(\t\x12\r\n\x05width\x18\x03 \x01(\x01\x12\"\n\x08position\x18\x04 \x01(\x0b\x32\x10.ovip.v1.Vector3\x12%\n\x04kind\x18\x05 \x01(\x0e\x32\x17.ovip.v1.RegionEdgeKind\x12\x1f\n\x05upper\x18\x06 \x01(\x0b\x32\x10.ovip.v1.Vector3\"_\n\x08\x46rontier\x12\r\n\x05\x66loor\x18\x01 \x01(\r\x12\x11\n\tregion_id\x18\x02 \x01(\t\x12\"\n\x08position\x18\x03 \x01(\x0b\x32\x10.ovip.v1.Vector3\x12\r\n\x05width\x18\x04 \x01(\x01\"|\n\x0bRegionEvent\x12&\n\x04kind\x18\x01 \x01(\x0e\x32\x18.ovip.v1.RegionEventKind\x12\x11\n\tregion_id\x18\x02 \x01(\t\x12\r\n\x05\x66loor\x18\x03 \x01(\r\x12\x14\n\x0c\x64isplay_name\x18\x04 \x01(\t\x12\r\n\x05other\x18\x05 \x01(\t\"I\n\x0c\x46loorSummary\x12\r\n\x05\x66loor\x18\x01 \x01(\r\x12\t\n\x01z\x18\x02 \x01(\x01\x12\x11\n\tceiling_z\x18\x03 \x01(\x01\x12\x0c\n\x04\x61rea\x18\x04 \x01(\x01\"\xfe\x01\n\tPartition\x12\x13\n\x0bmap_version\x18\x01 \x01(\x04\x12\x10\n\x08revision\x18\x02 \x01(\x04\x12%\n\x06\x66loors\x18\x03 \x03(\x0b\x32\x15.ovip.v1.FloorSummary\x12 \n\x07regions\x18\x04 \x03(\x0b\x32\x0f.ovip.v1.Region\x12\"\n\x05\x65\x64ges\x18\x05 \x03(\x0b\x32\x13.ovip.v1.RegionEdge\x12\x11\n\tfallbacks\x18\x06 \x03(\t\x12$\n\tfrontiers\x18\x07 \x03(\x0b\x32\x11.ovip.v1.Frontier\x12$\n\x06\x65vents\x18\x08 \x03(\x0b\x32\x14.ovip.v1.RegionEvent\"\"\n\x11GetRegionsRequest\x12\r\n\x05scene\x18\x01 \x01(\t\";\n\x12GetRegionsResponse\x12%\n\tpartition\x18\x01 \x01(\x0b\x32\x12.ovip.v1.Partition\"!\n\x10RecomputeRequest\x12\r\n\x05scene\x18\x01 \x01(\t\":\n\x11RecomputeResponse\x12%\n\tpartition\x18\x01 \x01(\x0b\x32\x12.ovip.v1.Partition\"<\n\x13WatchRegionsRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12\x16\n\x0e\x61\x66ter_revision\x18\x02 \x01(\x04\"=\n\x14WatchRegionsResponse\x12%\n\tpartition\x18\x01 \x01(\x0b\x32\x12.ovip.v1.Partition\"I\n\x13GetFloorGridRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12\r\n\x05\x66loor\x18\x02 \x01(\r\x12\x14\n\x0crobot_radius\x18\x03 \x01(\x01\"\xc6\x01\n\x14GetFloorGridResponse\x12\r\n\x05\x66loor\x18\x01 \x01(\r\x12\x10\n\x08origin_x\x18\x02 \x01(\x01\x12\x10\n\x08origin_y\x18\x03 \x01(\x01\x12\x12\n\nresolution\x18\x04 \x01(\x01\x12\x0c\n\x04rows\x18\x05 \x01(\r\x12\x0f\n\x07\x63olumns\x18\x06 \x01(\r\x12\x11\n\toccupancy\x18\x07 \x01(\x0c\x12\x0f\n\x07regions\x18\x08 \x01(\x0c\x12\x12\n\nregion_ids\x18\t \x03(\t\x12\x10\n\x08revision\x18\n \x01(\x04\"x\n\x10PlanRouteRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12\x1f\n\x05start\x18\x02 \x01(\x0b\x32\x10.ovip.v1.Vector3\x12\x1e\n\x04goal\x18\x03 \x01(\x0b\x32\x10.ovip.v1.Vector3\x12\x14\n\x0crobot_radius\x18\x04 \x01(\x01\"\x9d\x01\n\x11PlanRouteResponse\x12\x1e\n\x04path\x18\x01 \x03(\x0b\x32\x10.ovip.v1.Vector3\x12\x0e\n\x06length\x18\x02 \x01(\x01\x12\x12\n\nregion_ids\x18\x03 \x03(\t\x12%\n\x08passages\x18\x04 \x03(\x0b\x32\x13.ovip.v1.RegionEdge\x12\x0b\n\x03why\x18\x05 \x01(\t\x12\x10\n\x08revision\x18\x06 \x01(\x04\";\n\x14GetRouteGraphRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12\x14\n\x0crobot_radius\x18\x02 \x01(\x01\"r\n\tRouteNode\x12\x0c\n\x04node\x18\x01 \x01(\r\x12$\n\x07passage\x18\x02 \x01(\x0b\x32\x13.ovip.v1.RegionEdge\x12\r\n\x05\x66loor\x18\x03 \x01(\r\x12\"\n\x08position\x18\x04 \x01(\x0b\x32\x10.ovip.v1.Vector3\"D\n\tRouteLink\x12\t\n\x01\x61\x18\x01 \x01(\r\x12\t\n\x01\x62\x18\x02 \x01(\r\x12\x11\n\tregion_id\x18\x03 \x01(\t\x12\x0e\n\x06length\x18\x04 \x01(\x01\"o\n\x15GetRouteGraphResponse\x12!\n\x05nodes\x18\x01 \x03(\x0b\x32\x12.ovip.v1.RouteNode\x12!\n\x05links\x18\x02 \x03(\x0b\x32\x12.ovip.v1.RouteLink\x12\x10\n\x08revision\x18\x03 \x01(\x04*\x8b\x01\n\x0eRegionEdgeKind\x12 \n\x1cREGION_EDGE_KIND_UNSPECIFIED\x10\x00\x12\x1c\n\x18REGION_EDGE_KIND_OPENING\x10\x01\x12\x1c\n\x18REGION_EDGE_KIND_DOORWAY\x10\x02\x12\x1b\n\x17REGION_EDGE_KIND_STAIRS\x10\x03*\xb3\x01\n\x0fRegionEventKind\x12!\n\x1dREGION_EVENT_KIND_UNSPECIFIED\x10\x00\x12\x1e\n\x1aREGION_EVENT_KIND_APPEARED\x10\x01\x12\x1e\n\x1aREGION_EVENT_KIND_VANISHED\x10\x02\x12\x1d\n\x19REGION_EVENT_KIND_RETYPED\x10\x03\x12\x1e\n\x1aREGION_EVENT_KIND_RESHAPED\x10\x04\x32\xcb\x03\n\x0eRegionsService\x12\x45\n\nGetRegions\x12\x1a.ovip.v1.GetRegionsRequest\x1a\x1b.ovip.v1.GetRegionsResponse\x12\x42\n\tRecompute\x12\x19.ovip.v1.RecomputeRequest\x1a\x1a.ovip.v1.RecomputeResponse\x12M\n\x0cWatchRegions\x12\x1c.ovip.v1.WatchRegionsRequest\x1a\x1d.ovip.v1.WatchRegionsResponse0\x01\x12K\n\x0cGetFloorGrid\x12\x1c.ovip.v1.GetFloorGridRequest\x1a\x1d.ovip.v1.GetFloorGridResponse\x12\x42\n\tPlanRoute\x12\x19.ovip.v1.PlanRouteRequest\x1a\x1a.ovip.v1.PlanRouteResponse\x12N\n\rGetRouteGraph\x12\x1d.ovip.v1.GetRouteGraphRequest\x1a\x1e.ovip.v1.GetRouteGraphResponseb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'ovip.v1.regions_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
+  _globals['_REGIONEDGEKIND']._serialized_start=2266
+  _globals['_REGIONEDGEKIND']._serialized_end=2405
+  _globals['_REGIONEVENTKIND']._serialized_start=2408
+  _globals['_REGIONEVENTKIND']._serialized_end=2587
   _globals['_REGION']._serialized_start=56
-  _globals['_REGION']._serialized_end=296
-  _globals['_REGIONEDGE']._serialized_start=298
-  _globals['_REGIONEDGE']._serialized_end=383
-  _globals['_FLOORSUMMARY']._serialized_start=385
-  _globals['_FLOORSUMMARY']._serialized_end=458
-  _globals['_PARTITION']._serialized_start=461
-  _globals['_PARTITION']._serialized_end=639
-  _globals['_GETREGIONSREQUEST']._serialized_start=641
-  _globals['_GETREGIONSREQUEST']._serialized_end=675
-  _globals['_GETREGIONSRESPONSE']._serialized_start=677
-  _globals['_GETREGIONSRESPONSE']._serialized_end=736
-  _globals['_RECOMPUTEREQUEST']._serialized_start=738
-  _globals['_RECOMPUTEREQUEST']._serialized_end=771
-  _globals['_RECOMPUTERESPONSE']._serialized_start=773
-  _globals['_RECOMPUTERESPONSE']._serialized_end=831
-  _globals['_WATCHREGIONSREQUEST']._serialized_start=833
-  _globals['_WATCHREGIONSREQUEST']._serialized_end=893
-  _globals['_WATCHREGIONSRESPONSE']._serialized_start=895
-  _globals['_WATCHREGIONSRESPONSE']._serialized_end=956
-  _globals['_GETFLOORGRIDREQUEST']._serialized_start=958
-  _globals['_GETFLOORGRIDREQUEST']._serialized_end=1009
-  _globals['_GETFLOORGRIDRESPONSE']._serialized_start=1012
-  _globals['_GETFLOORGRIDRESPONSE']._serialized_end=1210
-  _globals['_REGIONSSERVICE']._serialized_start=1213
-  _globals['_REGIONSSERVICE']._serialized_end=1524
+  _globals['_REGION']._serialized_end=313
+  _globals['_REGIONEDGE']._serialized_start=316
+  _globals['_REGIONEDGE']._serialized_end=473
+  _globals['_FRONTIER']._serialized_start=475
+  _globals['_FRONTIER']._serialized_end=570
+  _globals['_REGIONEVENT']._serialized_start=572
+  _globals['_REGIONEVENT']._serialized_end=696
+  _globals['_FLOORSUMMARY']._serialized_start=698
+  _globals['_FLOORSUMMARY']._serialized_end=771
+  _globals['_PARTITION']._serialized_start=774
+  _globals['_PARTITION']._serialized_end=1028
+  _globals['_GETREGIONSREQUEST']._serialized_start=1030
+  _globals['_GETREGIONSREQUEST']._serialized_end=1064
+  _globals['_GETREGIONSRESPONSE']._serialized_start=1066
+  _globals['_GETREGIONSRESPONSE']._serialized_end=1125
+  _globals['_RECOMPUTEREQUEST']._serialized_start=1127
+  _globals['_RECOMPUTEREQUEST']._serialized_end=1160
+  _globals['_RECOMPUTERESPONSE']._serialized_start=1162
+  _globals['_RECOMPUTERESPONSE']._serialized_end=1220
+  _globals['_WATCHREGIONSREQUEST']._serialized_start=1222
+  _globals['_WATCHREGIONSREQUEST']._serialized_end=1282
+  _globals['_WATCHREGIONSRESPONSE']._serialized_start=1284
+  _globals['_WATCHREGIONSRESPONSE']._serialized_end=1345
+  _globals['_GETFLOORGRIDREQUEST']._serialized_start=1347
+  _globals['_GETFLOORGRIDREQUEST']._serialized_end=1420
+  _globals['_GETFLOORGRIDRESPONSE']._serialized_start=1423
+  _globals['_GETFLOORGRIDRESPONSE']._serialized_end=1621
+  _globals['_PLANROUTEREQUEST']._serialized_start=1623
+  _globals['_PLANROUTEREQUEST']._serialized_end=1743
+  _globals['_PLANROUTERESPONSE']._serialized_start=1746
+  _globals['_PLANROUTERESPONSE']._serialized_end=1903
+  _globals['_GETROUTEGRAPHREQUEST']._serialized_start=1905
+  _globals['_GETROUTEGRAPHREQUEST']._serialized_end=1964
+  _globals['_ROUTENODE']._serialized_start=1966
+  _globals['_ROUTENODE']._serialized_end=2080
+  _globals['_ROUTELINK']._serialized_start=2082
+  _globals['_ROUTELINK']._serialized_end=2150
+  _globals['_GETROUTEGRAPHRESPONSE']._serialized_start=2152
+  _globals['_GETROUTEGRAPHRESPONSE']._serialized_end=2263
+  _globals['_REGIONSSERVICE']._serialized_start=2590
+  _globals['_REGIONSSERVICE']._serialized_end=3049
 # @@protoc_insertion_point(module_scope)

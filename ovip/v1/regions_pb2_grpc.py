@@ -55,6 +55,16 @@ class RegionsServiceStub(object):
                 request_serializer=ovip_dot_v1_dot_regions__pb2.GetFloorGridRequest.SerializeToString,
                 response_deserializer=ovip_dot_v1_dot_regions__pb2.GetFloorGridResponse.FromString,
                 _registered_method=True)
+        self.PlanRoute = channel.unary_unary(
+                '/ovip.v1.RegionsService/PlanRoute',
+                request_serializer=ovip_dot_v1_dot_regions__pb2.PlanRouteRequest.SerializeToString,
+                response_deserializer=ovip_dot_v1_dot_regions__pb2.PlanRouteResponse.FromString,
+                _registered_method=True)
+        self.GetRouteGraph = channel.unary_unary(
+                '/ovip.v1.RegionsService/GetRouteGraph',
+                request_serializer=ovip_dot_v1_dot_regions__pb2.GetRouteGraphRequest.SerializeToString,
+                response_deserializer=ovip_dot_v1_dot_regions__pb2.GetRouteGraphResponse.FromString,
+                _registered_method=True)
 
 
 class RegionsServiceServicer(object):
@@ -83,7 +93,21 @@ class RegionsServiceServicer(object):
         raise NotImplementedError('Method not implemented!')
 
     def GetFloorGrid(self, request, context):
-        """The grids of one floor: free, occupied, unknown; clearance; region labels.
+        """The grids of one floor: free, occupied, unknown; region labels.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def PlanRoute(self, request, context):
+        """The shortest way for a robot of some radius, around furniture, through doorways, over stairs.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def GetRouteGraph(self, request, context):
+        """Doorways, openings and stairs as nodes, with the metres walked between those of one region.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
@@ -111,6 +135,16 @@ def add_RegionsServiceServicer_to_server(servicer, server):
                     servicer.GetFloorGrid,
                     request_deserializer=ovip_dot_v1_dot_regions__pb2.GetFloorGridRequest.FromString,
                     response_serializer=ovip_dot_v1_dot_regions__pb2.GetFloorGridResponse.SerializeToString,
+            ),
+            'PlanRoute': grpc.unary_unary_rpc_method_handler(
+                    servicer.PlanRoute,
+                    request_deserializer=ovip_dot_v1_dot_regions__pb2.PlanRouteRequest.FromString,
+                    response_serializer=ovip_dot_v1_dot_regions__pb2.PlanRouteResponse.SerializeToString,
+            ),
+            'GetRouteGraph': grpc.unary_unary_rpc_method_handler(
+                    servicer.GetRouteGraph,
+                    request_deserializer=ovip_dot_v1_dot_regions__pb2.GetRouteGraphRequest.FromString,
+                    response_serializer=ovip_dot_v1_dot_regions__pb2.GetRouteGraphResponse.SerializeToString,
             ),
     }
     generic_handler = grpc.method_handlers_generic_handler(
@@ -222,6 +256,60 @@ class RegionsService(object):
             '/ovip.v1.RegionsService/GetFloorGrid',
             ovip_dot_v1_dot_regions__pb2.GetFloorGridRequest.SerializeToString,
             ovip_dot_v1_dot_regions__pb2.GetFloorGridResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def PlanRoute(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/ovip.v1.RegionsService/PlanRoute',
+            ovip_dot_v1_dot_regions__pb2.PlanRouteRequest.SerializeToString,
+            ovip_dot_v1_dot_regions__pb2.PlanRouteResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def GetRouteGraph(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/ovip.v1.RegionsService/GetRouteGraph',
+            ovip_dot_v1_dot_regions__pb2.GetRouteGraphRequest.SerializeToString,
+            ovip_dot_v1_dot_regions__pb2.GetRouteGraphResponse.FromString,
             options,
             channel_credentials,
             insecure,

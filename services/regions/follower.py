@@ -20,17 +20,11 @@ from ovip.scene.types import DetectionBatch, SceneMap
 from ovip.stages import holding, new_owner
 from ovip.store import Entry, Lease, Store
 from ovip.telemetry import get_logger
-from services.regions.domain.assembly import (
-    Cut,
-    PlacedObjects,
-    SurveyedStorey,
-    assemble,
-    storeys_of_objects,
-    survey,
-)
+from services.regions.domain.assembly import Cut, PlacedObjects, assemble
 from services.regions.domain.evidence import FloorEvidence
 from services.regions.domain.pace import PaceParams, is_due
 from services.regions.domain.partition import PartitionParams
+from services.regions.domain.survey import SurveyedStorey, storeys_of_objects, survey
 from services.regions.metrics import FALLBACKS, FRAMES, PARTITION_SECONDS, PARTITIONS, SKIPPED
 from services.regions.ports import Grouper, Grouping, MapReader
 from services.regions.shelf import DETECTIONS, MAP, STAGE, Answered, Gathered, Shelf

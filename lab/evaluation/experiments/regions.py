@@ -20,8 +20,8 @@ from lab.evaluation.regions.methods import METHODS
 from lab.evaluation.regions.plans import StoreyPlans, storey_plans
 from lab.evaluation.regions.rows import Ground, score_regions, seen_share
 from lab.figures.plans import draw_silhouettes
-from services.regions.domain.assembly import survey
 from services.regions.domain.baselines.hovsg import hovsg_floors
+from services.regions.domain.survey import survey
 
 _OURS, _GEOMETRIC, _CLUSTERS = "KGSW", "SysNav", "auto-K"
 _ENOUGH_SEEN = 0.6

@@ -10,12 +10,13 @@ import numpy as np
 from lab.evaluation.regions.floors import FloorPlace
 from ovip.scene.types import F64, I32
 from services.regions.config import Settings
-from services.regions.domain.assembly import Cut, SurveyedStorey, assemble, storeys_of_objects
+from services.regions.domain.assembly import Cut, assemble
 from services.regions.domain.baselines.auto_k import auto_k_rooms
 from services.regions.domain.baselines.hovsg import hovsg_rooms
 from services.regions.domain.baselines.sysnav import sysnav_rooms
 from services.regions.domain.functions import functions_of
 from services.regions.domain.partition import UNKNOWN_FUNCTION, PartitionParams, Relief
+from services.regions.domain.survey import SurveyedStorey, storeys_of_objects
 
 Surveyed = tuple[SurveyedStorey, ...]
 

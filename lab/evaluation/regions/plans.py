@@ -16,7 +16,7 @@ from lab.evaluation.regions.rows import Ground
 from lab.figures.plans import Backdrop, Plan, draw_partition
 from lab.simulation.home import Area, inside_polygon
 from ovip.scene.types import F64, I32, Bools
-from services.regions.domain.assembly import SurveyedStorey, storeys_of_objects
+from services.regions.domain.survey import SurveyedStorey, storeys_of_objects
 
 DRAWN = ("KGSW", "KGSW -D relief", "HOV-SG", "SysNav", "auto-K")
 _DOOR_STEP = 0.5  # metres that a door's foot may be from the floor it stands on

@@ -22,9 +22,9 @@ from ovip.scene.grid import FREE, FloorGrid
 from ovip.scene.types import F64, I32, I64, Bools
 from ovip.scene.walking import traversable
 from ovip.scene.words import normalize_word
-from services.regions.domain.assembly import SurveyedStorey, storeys_of_objects
 from services.regions.domain.functions import FUNCTIONS, prior_of
 from services.regions.domain.partition import regions_at
+from services.regions.domain.survey import SurveyedStorey, storeys_of_objects
 from services.retrieval.domain.viewpoints import plan_waypoints
 
 ROBOT_RADIUS = 0.25

@@ -15,23 +15,15 @@ from scipy.spatial import cKDTree
 from ovip.scene.grid import FloorGrid
 from ovip.scene.types import F64, I64, Floor, Partition, Region, RegionEdge
 from services.regions.domain.adjacency import find_openings
-from services.regions.domain.evidence import FloorEvidence
-from services.regions.domain.floors import FloorParams, Storey, find_storeys, storey_of
-from services.regions.domain.free_space import FreeSpace, FreeSpaceParams, find_free_space
+from services.regions.domain.floors import Storey
+from services.regions.domain.free_space import FreeSpace
 from services.regions.domain.identity import keep_ids
 from services.regions.domain.outlines import trace_outlines
 from services.regions.domain.partition import PartitionParams, StoreyPartition, partition_storey, regions_at
+from services.regions.domain.survey import SurveyedStorey, storeys_of_objects
 
 _SAME_FLOOR = 0.5
 """Metres: a floor this close to one of the last partition is that floor."""
-
-
-@dataclass(frozen=True, slots=True)
-class SurveyedStorey:
-    """A storey and its free space."""
-
-    storey: Storey
-    space: FreeSpace
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,21 +56,6 @@ class Cut:
     @classmethod
     def none(cls) -> Cut:
         return cls(Partition(0, 0), (), 1)
-
-
-def survey(
-    evidence: FloorEvidence, floors: FloorParams | None = None, space: FreeSpaceParams | None = None
-) -> tuple[SurveyedStorey, ...]:
-    """The storeys that the evidence shows, from the lowest up, each with its free space."""
-    storeys = find_storeys(evidence, floors)
-    return tuple(SurveyedStorey(storey, find_free_space(evidence, storey, space)) for storey in storeys)
-
-
-def storeys_of_objects(surveyed: tuple[SurveyedStorey, ...], centres: F64) -> I64:
-    """Index of the storey of each of `(N, 3)` points -> `(N,)`; zeros where nothing was surveyed."""
-    if not surveyed:
-        return np.zeros(len(centres), np.int64)
-    return storey_of(tuple(s.storey for s in surveyed), centres[:, 2])
 
 
 def assemble(

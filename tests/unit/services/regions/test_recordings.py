@@ -13,10 +13,11 @@ from ovip.scene.camera import backproject
 from ovip.scene.types import F64, Intrinsics
 from ovip.scene.voxels import downsample
 from ovip.scene.walking import shortest_path
-from services.regions.domain.assembly import Cut, PlacedObjects, assemble, survey
+from services.regions.domain.assembly import Cut, PlacedObjects, assemble
 from services.regions.domain.evidence import FloorEvidence
 from services.regions.domain.functions import functions_of
 from services.regions.domain.partition import PartitionParams, Relief
+from services.regions.domain.survey import survey
 
 DATA = Path(__file__).resolve().parents[5] / "shared" / "data"
 pytestmark = pytest.mark.recording

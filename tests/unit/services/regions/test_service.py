@@ -6,8 +6,9 @@ import pytest
 
 from ovip.errors import Corrupt, DeadlineExceeded, NotFound
 from ovip.store import Store
-from services.regions.domain.assembly import Cut, PlacedObjects, assemble, survey
+from services.regions.domain.assembly import Cut, PlacedObjects, assemble
 from services.regions.domain.evidence import FloorEvidence
+from services.regions.domain.survey import survey
 from services.regions.service import Regions
 from services.regions.shelf import STAGE, Answered, Gathered, Shelf
 from tests.unit.services.regions.rooms import two_rooms

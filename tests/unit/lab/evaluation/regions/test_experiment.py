@@ -14,7 +14,7 @@ from lab.evaluation.regions.rows import Ground, score_regions
 from lab.simulation.imperfect import halved, imperfect_batches, small_house_frames
 from lab.simulation.small_house import load_small_house
 from ovip.errors import InvalidInput
-from services.regions.domain.assembly import survey
+from services.regions.domain.survey import survey
 
 HOUSE = Path(__file__).resolve().parents[5] / "shared" / "data" / "small_house"
 

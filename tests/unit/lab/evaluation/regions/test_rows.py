@@ -13,9 +13,10 @@ from lab.evaluation.regions.plans import storey_plans
 from lab.evaluation.regions.rows import Ground, holders, predicted_rooms, score_regions, seen_share, units_of
 from lab.simulation.home import Area, Storey
 from ovip.scene.types import F32, F64
-from services.regions.domain.assembly import PlacedObjects, survey
+from services.regions.domain.assembly import PlacedObjects
 from services.regions.domain.evidence import FloorEvidence
 from services.regions.domain.partition import Relief
+from services.regions.domain.survey import survey
 from tests.unit.services.regions.rooms import plane, room, seen, two_rooms, without
 
 THINGS = (("bed", 1.0, 3.0), ("nightstand", 2.5, 3.5), ("stove", 7.5, 3.5), ("fridge", 7.5, 1.9))

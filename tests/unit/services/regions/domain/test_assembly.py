@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.regions.domain.assembly import Cut, PlacedObjects, assemble, storeys_of_objects, survey
+from services.regions.domain.assembly import Cut, PlacedObjects, assemble
 from services.regions.domain.evidence import FloorEvidence
+from services.regions.domain.survey import storeys_of_objects, survey
 from tests.unit.services.regions.rooms import room, seen, two_rooms
 
 

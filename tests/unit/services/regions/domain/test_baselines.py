@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from ovip.scene.types import F64, I32
-from services.regions.domain.assembly import SurveyedStorey, survey
 from services.regions.domain.baselines.auto_k import AutoKParams, auto_k_rooms, choose_k, silhouette
 from services.regions.domain.baselines.heights import ceiling_of, filled_voxels
 from services.regions.domain.baselines.hovsg import hovsg_floors, hovsg_rooms
@@ -18,6 +17,7 @@ from services.regions.domain.evidence import Counts, FloorEvidence
 from services.regions.domain.floors import Storey
 from services.regions.domain.free_space import FreeSpace
 from services.regions.domain.partition import PartitionParams, Relief
+from services.regions.domain.survey import SurveyedStorey, survey
 from tests.unit.services.regions.rooms import plane, room, seen, two_rooms
 
 EMPTY = np.zeros((0, 0), bool)
