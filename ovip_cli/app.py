@@ -9,7 +9,20 @@ from pydantic import ValidationError
 
 from ovip.config import explain
 from ovip.errors import OvipError
-from ovip_cli import bench, editing, evaluating, export, find, inspect, models, record, replay, scenes, up
+from ovip_cli import (
+    bench,
+    editing,
+    evaluating,
+    export,
+    find,
+    inspect,
+    models,
+    record,
+    regions,
+    replay,
+    scenes,
+    up,
+)
 
 app = typer.Typer(
     name="ovip",
@@ -23,6 +36,7 @@ app.command("inspect")(inspect.inspect)
 app.command("replay")(replay.replay)
 app.command("record")(record.record)
 app.command("find")(find.find)
+app.command("regions")(regions.regions)
 app.command("export")(export.export)
 app.command("bench")(bench.bench)
 app.command("eval")(evaluating.evaluate)

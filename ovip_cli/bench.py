@@ -27,7 +27,11 @@ class Bench(StrEnum):
     REPLAY = "replay"
     TIER1 = "tier1"
     START = "start"
+    REGIONS = "regions"
     RENDERING = "rendering"
+
+
+_MOST_COLUMNS = 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +46,7 @@ class Options:
     objects: list[int] | None
     detections: list[int] | None
     dim: list[int] | None
+    areas: list[int] | None
     recording: Path | None
     layout: str
 
@@ -63,6 +68,9 @@ def bench(
         str | None, typer.Option(help="lifting, mapper, replay: detections a frame, like 20,40")
     ] = None,
     dim: Annotated[str | None, typer.Option(help="mapper: numbers a feature has, like 512,1024")] = None,
+    areas: Annotated[
+        str | None, typer.Option(help="regions: sizes of floor in square metres, like 200,10000")
+    ] = None,
     recording: Annotated[
         Path | None, typer.Option(help="perception, replay: a recording instead of the simulated home")
     ] = None,
@@ -71,7 +79,7 @@ def bench(
     ] = "ovip",
     json: Json = False,
 ) -> None:
-    """Measure durable ingest, perception, the mapper, a whole replay, tier 1's answers, a start, rendering."""
+    """Measure durable ingest, perception, the mapper, a replay, tier 1's answers, a start, regions, rendering."""
     configure_logging("warning", as_json=False)
     options = Options(
         robots,
@@ -82,6 +90,7 @@ def bench(
         _numbers(objects),
         _numbers(detections),
         _numbers(dim),
+        _numbers(areas),
         recording,
         layout,
     )
@@ -161,6 +170,12 @@ def _start(_: Options) -> list[Row]:
     return measure_start()
 
 
+def _regions(options: Options) -> list[Row]:
+    from lab.bench.regions import SIZES, measure_regions
+
+    return measure_regions(options.areas or SIZES)
+
+
 def _rendering(options: Options) -> list[Row]:
     from lab.bench.rendering import measure_rendering
 
@@ -176,13 +191,18 @@ MEASURES: dict[Bench, Callable[[Options], list[Row]]] = {
     Bench.REPLAY: _replay,
     Bench.TIER1: _tier1,
     Bench.START: _start,
+    Bench.REGIONS: _regions,
     Bench.RENDERING: _rendering,
 }
 
 
 def _print_table(name: str, rows: list[Row]) -> None:
-    widths = {column: max(len(column), *(len(str(row[column])) for row in rows)) for column in rows[0]}
+    """A line for each row; a line for each column where there are more than a person's screen holds."""
+    lines = [[str(row[column]) for column in rows[0]] for row in rows]
+    table = [list(rows[0]), *lines]
+    if len(rows[0]) > _MOST_COLUMNS:
+        table = [list(column) for column in zip(*table, strict=True)]
+    widths = [max(len(line[i]) for line in table) for i in range(len(table[0]))]
     print(f"\n{name}")
-    print("  ".join(f"{column:>{width}}" for column, width in widths.items()))
-    for row in rows:
-        print("  ".join(f"{row[column]!s:>{width}}" for column, width in widths.items()))
+    for line in table:
+        print("  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)))

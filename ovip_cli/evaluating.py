@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import time
+from dataclasses import fields
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -79,20 +80,18 @@ def _experiment(name: Protocol) -> Experiment:
 
 
 def _plain(result: Result, seconds: float) -> dict[str, Any]:
-    return {
-        "rows": result.rows,
-        "scenes": result.scenes,
-        "seconds": seconds,
-        "figures": [str(path) for path in result.figures],
-        "notes": list(result.notes),
-    }
+    """Every field of the result, those that only its protocol gives among them."""
+    told = {field.name: getattr(result, field.name) for field in fields(result)}
+    return {**told, "figures": [str(path) for path in result.figures], "seconds": seconds}
 
 
 def _say(name: str, result: Result, seconds: float) -> None:
-    _print_table(f"{name}, compat", [_without_strict(row) for row in result.rows])
+    _print_table(f"{name}, compat", [_flat(row) for row in result.rows])
     strict = [{"config": row["config"], **row["strict"]} for row in result.rows if "strict" in row]
     if strict:
         _print_table(f"{name}, strict", strict)
+    for table, rows in _own_tables(result):
+        _print_table(f"{name}, {table}", [_flat(row) for row in rows])
     for note in result.notes:
         print(f"note: {note}")
     for path in result.figures:
@@ -100,8 +99,16 @@ def _say(name: str, result: Result, seconds: float) -> None:
     print(f"{seconds:.1f} s")
 
 
-def _without_strict(row: Row) -> Row:
-    return {column: value for column, value in row.items() if not isinstance(value, dict)}
+def _own_tables(result: Result) -> list[tuple[str, list[Row]]]:
+    """The tables that only the result's protocol gives, by name."""
+    shared = {field.name for field in fields(Result)}
+    own = [(field.name, getattr(result, field.name)) for field in fields(result) if field.name not in shared]
+    return [(name, rows) for name, rows in own if rows]
+
+
+def _flat(row: Row) -> Row:
+    """The columns that a table can show."""
+    return {column: value for column, value in row.items() if not isinstance(value, (dict, list))}
 
 
 def _print_table(title: str, rows: list[Row]) -> None:

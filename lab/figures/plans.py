@@ -44,12 +44,14 @@ class Plan:
     """One storey cut up. labels: `(R, C)`, 0 = none, else 1 + index into `names`; rows grow with y.
 
     title: above it; note: below it. names: of the regions, "" = draw none; a known function gives its colour.
+    under: what stands under each name, in the same order; none of them where it is empty.
     """
 
     title: str
     labels: I32
     names: tuple[str, ...]
     note: str = ""
+    under: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,21 +89,48 @@ def draw_partition(
     return save_figure(figure, path)
 
 
-def draw_silhouettes(path: Path, title: str, curves: Mapping[str, Mapping[int, float]]) -> Path:
-    """Writes a PNG of each home's silhouette over K, its chosen K marked. Returns `path`."""
-    figure, axes = new_figure((8.4, 4.2))
-    for number, (name, scores) in enumerate(curves.items()):
-        if not scores:
-            continue
-        k = sorted(scores)
-        best = max(k, key=lambda tried: scores[tried])
-        color = _tone(number)
-        axes.plot(k, [scores[tried] for tried in k], marker="o", markersize=3.5, color=color, label=name)
-        axes.plot([best], [scores[best]], marker="o", markersize=10, fillstyle="none", color=color)
-    axes.set(xlabel="K", ylabel="mean silhouette", title=title)
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+@dataclass(frozen=True, slots=True)
+class KCurve:
+    """One home's auto-K: silhouette and accuracy by K, the K that was chosen, and the true number of areas."""
+
+    name: str
+    silhouettes: Mapping[int, float]
+    acc: Mapping[int, float]
+    chosen: int | None
+    areas: int
+
+
+def draw_silhouettes(path: Path, title: str, curves: Sequence[KCurve]) -> Path:
+    """Writes a PNG of each home's silhouette and accuracy over K. Returns `path`; NotConfigured without matplotlib.
+
+    A ring marks the chosen K, a cross the true number of areas.
+    """
+    figure, (left, right) = new_figure((12.5, 4.4), ncols=2)
+    for number, curve in enumerate(curves):
+        _draw_curve(left, curve.name, curve.silhouettes, curve, number)
+        _draw_curve(right, curve.name, curve.acc, curve, number)
+    left.set(xlabel="K", ylabel="mean silhouette")
+    right.set(xlabel="K (ring: chosen by silhouette; cross: true number of areas)", ylabel="acc")
+    right.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.suptitle(title, fontsize=13, color=_INK)
     return save_figure(figure, path)
+
+
+def _draw_curve(axes: Any, name: str, values: Mapping[int, float], curve: KCurve, number: int) -> None:
+    k, color = sorted(values), _tone(number)
+    axes.plot(k, [values[tried] for tried in k], marker="o", markersize=3, color=color, label=name)
+    for mark, at in (("o", curve.chosen), ("x", curve.areas)):
+        if at is not None and at in values:
+            axes.plot(
+                [at],
+                [values[at]],
+                marker=mark,
+                markersize=10,
+                fillstyle="none",
+                color=color,
+                markeredgewidth=1.8,
+            )
+    axes.grid(alpha=0.3)
 
 
 def _window(backdrop: Backdrop, plans: Sequence[Plan]) -> tuple[slice, slice]:
@@ -182,15 +211,16 @@ def _borders(labels: I32) -> Bools:
 
 
 def _names(plan: Plan, backdrop: Backdrop) -> list[tuple[str, F64]]:
-    """Each large region's name and the middle of its widest place, world x, y."""
+    """Each large region's name, with what stands under it, and the middle of its widest place, world x, y."""
     placed = []
-    for number, name in enumerate(plan.names, start=1):
+    under = plan.under or ("",) * len(plan.names)
+    for number, (name, below) in enumerate(zip(plan.names, under, strict=True), start=1):
         cells = plan.labels == number
         if name and cells.sum() * backdrop.resolution**2 >= _SMALLEST_NAMED:
             depth = ndimage.distance_transform_edt(np.pad(cells, 1))[1:-1, 1:-1]
             row, column = np.unravel_index(int(depth.argmax()), cells.shape)
             place = (np.array([column, row]) + 0.5) * backdrop.resolution + np.asarray(backdrop.origin)
-            placed.append((name, place))
+            placed.append((f"{name}\n{below}" if below else name, place))
     return placed
 
 

@@ -23,6 +23,8 @@ from ovip.ids import uuid7
 from ovip.keys import log_order
 from ovip.scene.answers import Answer, Observation, PerceptionStatus, Query, SearchEvent, Viewpoint
 from ovip.scene.edits import Delete, Edit, EditRequest, Merge, Pin, Rename, Split
+from ovip.scene.navigation import Route
+from ovip.scene.route_graph import RouteGraph
 from ovip.scene.types import F64, MapDelta, Partition, SceneMap
 from ovip.scene.versions import MapDiff, Verification
 
@@ -187,3 +189,14 @@ class AsyncClient:
     async def get_regions(self, scene: str) -> Partition:
         """The newest partition of a scene's floors."""
         return await self.regions.get_partition(scene)
+
+    async def route(self, scene: str, start: F64, goal: F64, robot_radius: float = 0.0) -> Route:
+        """The shortest way between two points `(3,)`, world metres, around furniture and over stairs.
+
+        robot_radius: metres, 0 for the service's own setting. Where there is no way, `.why` says so.
+        """
+        return await self.regions.plan_route(scene, start, goal, robot_radius)
+
+    async def route_graph(self, scene: str, robot_radius: float = 0.0) -> RouteGraph:
+        """Doorways, openings and stairs that a robot fits through, and the metres walked between them."""
+        return await self.regions.get_route_graph(scene, robot_radius)

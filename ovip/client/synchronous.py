@@ -13,6 +13,8 @@ from ovip.client.asynchronous import AsyncClient
 from ovip.client.streaming import Hello, OutgoingFrame, StreamEvent, StreamReport
 from ovip.scene.answers import Answer, Observation, Query, SearchEvent, Viewpoint
 from ovip.scene.edits import Edit
+from ovip.scene.navigation import Route
+from ovip.scene.route_graph import RouteGraph
 from ovip.scene.types import F64, MapDelta, Partition, SceneMap
 from ovip.scene.versions import MapDiff, Verification
 
@@ -126,6 +128,14 @@ class Client:
     def get_regions(self, scene: str) -> Partition:
         """The newest partition of a scene's floors."""
         return self._run(self._client.get_regions(scene))
+
+    def route(self, scene: str, start: F64, goal: F64, robot_radius: float = 0.0) -> Route:
+        """The shortest way between two points `(3,)`, world metres. See `AsyncClient.route`."""
+        return self._run(self._client.route(scene, start, goal, robot_radius))
+
+    def route_graph(self, scene: str, robot_radius: float = 0.0) -> RouteGraph:
+        """Doorways, openings and stairs that a robot fits through, and the metres walked between them."""
+        return self._run(self._client.route_graph(scene, robot_radius))
 
     def _run(self, work: Coroutine[Any, Any, T]) -> T:
         return asyncio.run_coroutine_threadsafe(work, self._loop).result()

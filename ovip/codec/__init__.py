@@ -52,6 +52,12 @@ from ovip.codec.geometry import (
     vector_value,
     vectors_value,
 )
+from ovip.codec.navigation import (
+    route_graph_message,
+    route_graph_value,
+    route_message,
+    route_value,
+)
 from ovip.codec.objects import PART_BYTES, map_parts, map_value, object_message, object_value
 from ovip.codec.points import Clouds, points_parts, points_value
 from ovip.codec.queries import event_message, event_value, query_message, query_value
@@ -142,6 +148,10 @@ __all__ = [
     "pose_value",
     "query_message",
     "query_value",
+    "route_graph_message",
+    "route_graph_value",
+    "route_message",
+    "route_value",
     "tier_report_message",
     "tier_report_value",
     "vector_message",

@@ -9,7 +9,11 @@ from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
 from ovip.scene.grid import FREE, OCCUPIED, FloorGrid
-from ovip.scene.types import F64, I64, Bools
+from ovip.scene.types import F64, I32, I64, Bools
+
+_MOST_AROUND = 24
+"""Cells of radius above which a distance transform is cheaper than one run of cells a row."""
+_FEW_SAMPLES = 24
 
 
 def clearance(grid: FloorGrid) -> F64:
@@ -30,8 +34,12 @@ def clearance(grid: FloorGrid) -> F64:
 
 def traversable(grid: FloorGrid, radius: float) -> Bools:
     """Cells where a round robot of `radius` metres may stand: free, with clearance >= radius -> `(R, C)`."""
-    stands: Bools = (grid.occupancy == FREE) & (clearance(grid) >= radius)
-    return stands
+    free = grid.occupancy == FREE
+    occupied = grid.occupancy == OCCUPIED
+    around = int(np.ceil(radius / grid.resolution + 0.5))
+    if around > _MOST_AROUND:
+        return np.asarray(free & (clearance(grid) >= radius))
+    return np.asarray(free & ~_nearer_than(occupied, radius, grid.resolution, around))
 
 
 def close_footprints(grid: FloorGrid, boxes: F64) -> FloorGrid:
@@ -56,7 +64,7 @@ def distance_field(traversable: Bools, start_cell: tuple[int, int], resolution: 
     field = np.full(traversable.shape, np.inf)
     if not _holds(traversable, start_cell):
         return field
-    graph, nodes = _walk_graph(traversable, resolution)
+    graph, nodes = walk_graph(traversable, resolution)
     start = np.searchsorted(nodes, np.ravel_multi_index(start_cell, traversable.shape))
     field.ravel()[nodes] = csgraph.dijkstra(graph, directed=False, indices=int(start))
     return field
@@ -71,27 +79,28 @@ def shortest_path(grid: FloorGrid, start_xy: F64, goal_xy: F64, radius: float, r
     on the side that can be walked to). Ties go to the first cell in row-major order.
     """
     walkable = traversable(grid, radius)
-    graph, nodes = _walk_graph(walkable, grid.resolution)
-    ends = _snap(grid, graph, nodes, np.asarray(start_xy)[:2], np.asarray(goal_xy)[:2], reach)
+    nodes = np.flatnonzero(walkable)
+    ends = _snap(grid, walkable, nodes, np.asarray(start_xy)[:2], np.asarray(goal_xy)[:2], reach)
     if ends is None:
         return np.zeros((0, 2))
     start, goal = ends
+    graph, _ = walk_graph(walkable, grid.resolution)
     _, before = csgraph.dijkstra(graph, directed=False, indices=start, return_predecessors=True)
-    chain = [goal]
-    while chain[-1] != start:
-        chain.append(int(before[chain[-1]]))
-    return _centres(grid, nodes[chain[::-1]])
+    return cell_centres(grid, nodes[chain_back(before, start, goal)])
 
 
 def straighten(grid: FloorGrid, path: F64, radius: float) -> F64:
     """The path with every stretch that can be walked in a straight line walked so -> `(M, 2)`, M <= N."""
-    if len(path) < 3:
-        return path
-    walkable = traversable(grid, radius)
+    return path if len(path) < 3 else pull_straight(grid, traversable(grid, radius), path)
+
+
+def pull_straight(grid: FloorGrid, walkable: Bools, path: F64) -> F64:
+    """`straighten` on cells `(R, C)` known to be walkable: from each corner to the farthest point in a clear line."""
     kept = [0]
     while kept[-1] < len(path) - 1:
         here = kept[-1]
-        ahead = range(len(path) - 1, here + 1, -1)
+        ahead = np.arange(len(path) - 1, here + 1, -1)
+        ahead = ahead[_may_be_clear(grid, walkable, path[here], path[ahead])].tolist()
         kept.append(
             next((k for k in ahead if _straight_is_clear(grid, walkable, path[here], path[k])), here + 1)
         )
@@ -101,6 +110,52 @@ def straighten(grid: FloorGrid, path: F64, radius: float) -> F64:
 def path_length(path: F64) -> float:
     """Metres along a `(N, D)` polyline; 0 for fewer than two points."""
     return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+
+
+def walk_graph(mask: Bools, resolution: float, beside: Bools | None = None) -> tuple[sparse.csr_matrix, I64]:
+    """The steps between neighbouring cells `(R, C)` that are set, 8-connected, without cutting corners.
+
+    An undirected graph `(N, N)` in metres, each step stored once, and the flat indices `(N,)` of its nodes' cells.
+    beside: cells `(R, C)` that the corner of a diagonal step may brush; those set where None.
+    """
+    wide = mask.shape[1] + 2
+    number = np.full((mask.shape[0] + 2, wide), -1, dtype=np.int32)
+    nodes = np.flatnonzero(mask)
+    number[1:-1, 1:-1][mask] = np.arange(len(nodes), dtype=np.int32)
+    here = np.flatnonzero(number.ravel() >= 0)
+    heads = np.stack([number.ravel()[here + step] for step in (1, wide - 1, wide, wide + 1)], axis=1)
+    may_brush = np.pad(mask if beside is None else beside, 1).ravel()
+    heads[~(may_brush[here - 1] & may_brush[here + wide]), 1] = -1
+    heads[~(may_brush[here + 1] & may_brush[here + wide]), 3] = -1
+    there = heads >= 0
+    lengths = np.array([1.0, np.sqrt(2.0), 1.0, np.sqrt(2.0)]) * resolution
+    starts = np.concatenate([[0], np.cumsum(there.sum(axis=1))]).astype(np.int32)
+    steps = (np.broadcast_to(lengths, heads.shape)[there], heads[there], starts)
+    return sparse.csr_matrix(steps, shape=(len(nodes), len(nodes))), nodes
+
+
+def walk_pieces(mask: Bools) -> tuple[I32, int]:
+    """Cells `(R, C)` that can be walked to from one another, numbered from 1 (0: not set), and how many pieces.
+
+    A diagonal step needs both cells beside it, so pieces are 4-connected.
+    """
+    labelled, pieces = ndimage.label(mask)
+    return np.asarray(labelled, dtype=np.int32), int(pieces)
+
+
+def chain_back(before: I32, start: int, goal: int) -> list[int]:
+    """From start to goal along the predecessors `(N,)` of a search that began at the start."""
+    chain = [goal]
+    while chain[-1] != start:
+        chain.append(int(before[chain[-1]]))
+    return chain[::-1]
+
+
+def cell_centres(grid: FloorGrid, flat: I64) -> F64:
+    """World x, y of the centres of cells given by flat index `(N,)` -> `(N, 2)`."""
+    rows, columns = np.unravel_index(flat, grid.occupancy.shape)
+    centres: F64 = np.stack([columns + 0.5, rows + 0.5], axis=1) * grid.resolution + np.asarray(grid.origin)
+    return centres
 
 
 def _holds(mask: Bools, cell: tuple[int, int]) -> bool:
@@ -121,41 +176,48 @@ def _lattice(mask: Bools) -> Bools:
     return points
 
 
-def _walk_graph(mask: Bools, resolution: float) -> tuple[sparse.csr_matrix, I64]:
-    """The 8-connected graph of the cells that are set, weights in metres, and those cells' flat indices."""
-    nodes = np.flatnonzero(mask)
-    number = np.full(mask.shape, -1, dtype=np.int64)
-    number.ravel()[nodes] = np.arange(len(nodes))
-    across = mask[:, :-1] & mask[:, 1:]
-    down = mask[:-1] & mask[1:]
-    square = across[:-1] & across[1:]
-    steps = (
-        (number[:, :-1][across], number[:, 1:][across], 1.0),
-        (number[:-1][down], number[1:][down], 1.0),
-        (number[:-1, :-1][square], number[1:, 1:][square], np.sqrt(2.0)),
-        (number[:-1, 1:][square], number[1:, :-1][square], np.sqrt(2.0)),
-    )
-    tails = np.concatenate([tail for tail, _, _ in steps])
-    heads = np.concatenate([head for _, head, _ in steps])
-    weights = np.concatenate([np.full(len(tail), length * resolution) for tail, _, length in steps])
-    return sparse.csr_matrix((weights, (tails, heads)), shape=(len(nodes), len(nodes))), nodes
+def _nearer_than(occupied: Bools, radius: float, resolution: float, around: int) -> Bools:
+    """Cells whose centre is nearer than `radius` metres to the edge of an occupied cell -> `(R, C)`.
+
+    Each row of the disc about a cell is a run of cells, so one running sum along the rows serves every run.
+    """
+    rows, columns = occupied.shape
+    disc = _disc(radius, resolution, around)
+    total = np.zeros((rows, columns + 2 * around + 1), dtype=np.int32)
+    np.cumsum(np.pad(occupied, ((0, 0), (around, around))), axis=1, out=total[:, 1:])
+    near = np.zeros_like(occupied)
+    for away, width in enumerate(disc[around:].sum(axis=1).tolist()):
+        if not width or away >= rows:
+            break
+        first = around - width // 2
+        run = total[:, first + width : first + width + columns] > total[:, first : first + columns]
+        near[away:] |= run[: rows - away]
+        near[: rows - away] |= run[away:]
+    return near
+
+
+def _disc(radius: float, resolution: float, around: int) -> Bools:
+    """Cells whose centre is nearer than `radius` to the edge of the middle one -> `(2A + 1, 2A + 1)`."""
+    middle = np.zeros((2 * around + 1, 2 * around + 1), dtype=bool)
+    middle[around, around] = True
+    away = ndimage.distance_transform_edt(~_lattice(middle), sampling=resolution / 2)
+    return np.asarray(away[1::2, 1::2] < radius)
 
 
 def _snap(
-    grid: FloorGrid, graph: sparse.csr_matrix, nodes: I64, start_xy: F64, goal_xy: F64, reach: float
+    grid: FloorGrid, walkable: Bools, nodes: I64, start_xy: F64, goal_xy: F64, reach: float
 ) -> tuple[int, int] | None:
     """The nodes nearest to start and goal in the piece of floor where both are nearest together."""
     if not len(nodes):
         return None
-    centres = _centres(grid, nodes)
+    centres = cell_centres(grid, nodes)
     to_start = np.linalg.norm(centres - start_xy, axis=1)
     to_goal = np.linalg.norm(centres - goal_xy, axis=1)
-    pieces, piece = csgraph.connected_components(graph, directed=False)
+    labelled, pieces = walk_pieces(walkable)
+    piece = labelled.ravel()[nodes] - 1
     every = np.arange(pieces)
-    snap = ndimage.minimum(to_start, piece, every) + ndimage.minimum(to_goal, piece, every)
-    snap[
-        np.maximum(ndimage.minimum(to_start, piece, every), ndimage.minimum(to_goal, piece, every)) > reach
-    ] = np.inf
+    nearest = np.stack([ndimage.minimum(away, piece, every) for away in (to_start, to_goal)])
+    snap = np.where(nearest.max(axis=0) > reach, np.inf, nearest[0] + nearest[1])
     best = int(np.argmin(snap))
     if not np.isfinite(snap[best]):
         return None
@@ -166,15 +228,24 @@ def _snap(
     )
 
 
-def _centres(grid: FloorGrid, flat: I64) -> F64:
-    rows, columns = np.unravel_index(flat, grid.occupancy.shape)
-    centres: F64 = np.stack([columns + 0.5, rows + 0.5], axis=1) * grid.resolution + np.asarray(grid.origin)
-    return centres
+def _may_be_clear(grid: FloorGrid, walkable: Bools, a: F64, ends: F64) -> Bools:
+    """False only where a few of the samples of the segment from `a` to an end `(K, 2)` meet a wall -> `(K,)`."""
+    last = _samples(grid, a, ends) - 1
+    share = np.rint(np.linspace(0.0, 1.0, _FEW_SAMPLES) * last[:, None]) * (1.0 / last[:, None])
+    points = a + np.minimum(share, 1.0)[:, :, None] * (ends - a)[:, None]
+    cells = np.floor((points - np.asarray(grid.origin)) / grid.resolution).astype(int)
+    return np.asarray(walkable[cells[..., 1], cells[..., 0]].all(axis=1))
+
+
+def _samples(grid: FloorGrid, a: F64, ends: F64) -> I64:
+    """Number of points a quarter cell apart on the segments from `a` to the ends `(K, 2)` -> `(K,)`."""
+    steps = np.ceil(np.linalg.norm(ends - a, axis=1) / (0.25 * grid.resolution)).astype(np.int64)
+    return np.asarray(np.maximum(2, steps + 1))
 
 
 def _straight_is_clear(grid: FloorGrid, walkable: Bools, a: F64, b: F64) -> bool:
     """Whether every cell that the segment crosses, sampled at a quarter cell, is walkable."""
-    samples = max(2, int(np.ceil(np.linalg.norm(b - a) / (0.25 * grid.resolution))) + 1)
+    samples = int(_samples(grid, a, b[None])[0])
     points = a + np.linspace(0.0, 1.0, samples)[:, None] * (b - a)
     cells = np.floor((points - np.asarray(grid.origin)) / grid.resolution).astype(int)
     return bool(walkable[cells[:, 1], cells[:, 0]].all())

@@ -22,7 +22,7 @@ async def serve(settings: Settings, store: Store) -> AsyncIterator[int]:  # noqa
     check_exposure(settings.host, settings.api_key)
     stopping = asyncio.Event()
     async with connected(settings) as backends:
-        service = SceneService(backends, settings.api_regions_poll_s)
+        service = SceneService(backends)
         app = create_app(service, settings, stopping)
         async with listening(app, settings.host, settings.port, stopping) as port:
             get_logger("api").info("listening", service="api", address=f"{settings.host}:{port}")

@@ -8,12 +8,9 @@ from ovip.config import KernelSettings
 
 
 class Settings(KernelSettings):
-    """Where the api listens, and how often its event streams look at slower products."""
+    """Where the api listens, and how long its event streams and checks wait."""
 
     api_port: int = Field(8080, ge=0, le=65535, description="port that the api listens on; 0: a free one")
-    api_regions_poll_s: float = Field(
-        2.0, gt=0, description="seconds between two looks at a scene's regions revision while someone watches"
-    )
     api_heartbeat_s: float = Field(
         15.0, gt=0, description="seconds of silence after which an event stream sends a comment to stay open"
     )

@@ -16,7 +16,9 @@ from ovip.scene.answers import (
     SearchEvent,
 )
 from ovip.scene.grid import FloorGrid
-from ovip.scene.types import F32, U8, MapDelta, MapObject, Partition, SceneMap
+from ovip.scene.navigation import Route
+from ovip.scene.route_graph import RouteGraph
+from ovip.scene.types import F32, F64, U8, MapDelta, MapObject, Partition, SceneMap
 
 
 class Frames(Protocol):
@@ -52,11 +54,17 @@ class MapLog(Protocol):
 
 
 class Regions(Protocol):
-    """Regions: the partition and the grids of the floors."""
+    """Regions: the partition, each new one, and the grids of the floors."""
 
     async def get_partition(self, scene: str) -> Partition: ...
 
     async def get_floor_grid(self, scene: str, floor: int) -> FloorGrid: ...
+
+    async def plan_route(self, scene: str, start: F64, goal: F64, robot_radius: float = 0.0) -> Route: ...
+
+    async def get_route_graph(self, scene: str, robot_radius: float = 0.0) -> RouteGraph: ...
+
+    def watch(self, scene: str, after_revision: int = 0) -> AsyncIterator[Partition]: ...
 
 
 class Searches(Protocol):

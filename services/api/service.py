@@ -21,9 +21,12 @@ from ovip.scene.answers import (
     SearchEvent,
 )
 from ovip.scene.grid import FloorGrid
-from ovip.scene.types import F32, U8, MapDelta, MapObject, Partition, SceneMap
+from ovip.scene.navigation import Route
+from ovip.scene.route_graph import RouteGraph
+from ovip.scene.types import F32, F64, U8, MapDelta, MapObject, Partition, RegionEvent, SceneMap
 from ovip.scene.words import normalize_word
-from services.api.domain.floorplan import PlanParams, draw_floorplan
+from services.api.domain.floorplan import PlanParams, draw_floorplans
+from services.api.domain.plan_sheet import fits, plan_sheets
 from services.api.domain.ply import PlyObject
 from services.api.domain.point_cloud import pack_points
 from services.api.ports import Backends
@@ -32,6 +35,7 @@ T = TypeVar("T")
 
 _POINTS_A_CALL = 400_000
 _QUEUED_EVENTS = 256
+_LOOKS = 3
 
 
 class FrameName(StrEnum):
@@ -67,12 +71,21 @@ class Page(Generic[T]):
     more: bool
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CutFloors:
+    """A partition with grids of its floors that fit to it."""
+
+    partition: Partition
+    grids: tuple[FloorGrid, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class RegionsChanged:
-    """The partition of a scene has this revision now."""
+    """The partition of a scene has this revision now. events: what changed since the revision before."""
 
     revision: int
     map_version: int
+    events: tuple[RegionEvent, ...] = ()
 
 
 SceneEvent = MapDelta | RegionsChanged
@@ -81,9 +94,9 @@ SceneEvent = MapDelta | RegionsChanged
 class SceneService:
     """Reads scenes, asks questions, follows changes. Keeps nothing between two calls."""
 
-    def __init__(self, backends: Backends, regions_poll_s: float) -> None:
+    def __init__(self, backends: Backends) -> None:
         self._ask = backends
-        self._regions_poll_s = regions_poll_s
+        self._drawing = asyncio.Semaphore(1)
 
     async def scenes(self) -> list[SceneSummary]:
         return sorted(await self._ask.objects.list_scenes(), key=lambda summary: summary.scene)
@@ -150,25 +163,46 @@ class SceneService:
         items = tuple(records[:limit])
         return Page(items, items[-1].log_id if items else after, len(records) > limit)
 
+    async def regions_of_frames(self, scene: str) -> dict[str, str]:
+        """Frame id -> id of the region that it was taken in; frames since the last partition are not in it."""
+        partition = await self.partition(scene)
+        return {frame_id: region.region_id for region in partition.regions for frame_id in region.frame_ids}
+
     async def frame_image(self, scene: str, frame_id: str) -> bytes:
         return await self._ask.frames.get_rgb(scene, frame_id)
 
     async def floor_grid(self, scene: str, floor: int) -> FloorGrid:
-        return await self._ask.regions.get_floor_grid(scene, floor)
+        """The grid of one floor; NotFound as for `cut_floors`."""
+        return (await self.cut_floors(scene, floor)).grids[0]
 
-    async def floorplan(self, scene: str, floor: int, params: PlanParams) -> bytes:
-        grid, partition, scene_map = await asyncio.gather(
-            self.floor_grid(scene, floor), self.partition(scene), self.scene_map(scene)
-        )
-        regions = [region for region in partition.regions if region.floor == floor]
-        elsewhere = {
-            object_id
-            for region in partition.regions
-            if region.floor != floor
-            for object_id in region.object_ids
-        }
-        objects = [obj for obj in scene_map.objects if obj.object_id not in elsewhere]
-        return await asyncio.to_thread(draw_floorplan, grid, regions, objects, params)
+    async def cut_floors(self, scene: str, floor: int | None = None) -> CutFloors:
+        """The partition with the grids of one floor or, without a number, of all.
+
+        NotFound before the first partition, and for a floor that there is not. Partition and grids are read
+        one after the other: where a new partition came between, they are read again.
+        """
+        for _ in range(_LOOKS):
+            partition = await self.partition(scene)
+            wanted = _wanted_floors(scene, partition, floor)
+            grids = await asyncio.gather(
+                *(self._ask.regions.get_floor_grid(scene, number) for number in wanted)
+            )
+            if all(fits(grid, partition) for grid in grids):
+                break
+        return CutFloors(partition, tuple(grids))
+
+    async def route(self, scene: str, start: F64, goal: F64, robot_radius: float) -> Route:
+        return await self._ask.regions.plan_route(scene, start, goal, robot_radius)
+
+    async def route_graph(self, scene: str, robot_radius: float) -> RouteGraph:
+        return await self._ask.regions.get_route_graph(scene, robot_radius)
+
+    async def floorplan(self, scene: str, floor: int | None, params: PlanParams) -> bytes:
+        """One floor, or all side by side, as a PNG. One is drawn at a time: a large one takes seconds and memory."""
+        cut, scene_map = await asyncio.gather(self.cut_floors(scene, floor), self.scene_map(scene))
+        sheets = plan_sheets(scene_map, cut.partition, cut.grids)
+        async with self._drawing:
+            return await asyncio.to_thread(draw_floorplans, sheets, params)
 
     async def packed_points(
         self, summary: SceneSummary, object_ids: Sequence[str], max_points: int, frame: OutputFrame
@@ -223,14 +257,21 @@ class SceneService:
         return _merged([self._ask.map_log.watch(scene, after_version), self._revisions(scene)])
 
     async def _revisions(self, scene: str) -> AsyncIterator[RegionsChanged]:
-        """The regions revision now, and again each time it changes."""
-        seen = -1
-        while True:
-            partition = await self.partition(scene)
-            if partition.revision != seen:
-                seen = partition.revision
-                yield RegionsChanged(partition.revision, partition.map_version)
-            await asyncio.sleep(self._regions_poll_s)
+        """The regions revision now, and each new one."""
+        newest = await self.partition(scene)
+        yield RegionsChanged(newest.revision, newest.map_version, newest.events)
+        async for partition in self._ask.regions.watch(scene, newest.revision):
+            yield RegionsChanged(partition.revision, partition.map_version, partition.events)
+
+
+def _wanted_floors(scene: str, partition: Partition, floor: int | None) -> list[int]:
+    there = [known.floor for known in partition.floors]
+    if not there:
+        raise NotFound(f"scene {scene!r} has no regions yet: its floors are cut once enough of them was seen")
+    if floor is not None and floor not in there:
+        names = ", ".join(str(number) for number in there)
+        raise NotFound(f"floor {floor}: no such floor in scene {scene!r}; there are: {names}")
+    return there if floor is None else [floor]
 
 
 async def _merged(sources: Sequence[AsyncIterator[T]]) -> AsyncGenerator[T]:

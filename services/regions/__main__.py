@@ -14,6 +14,7 @@ from services.regions.adapters.table_grouping import TableGrouper
 from services.regions.adapters.vlm_grouping import VlmGrouper
 from services.regions.config import Settings
 from services.regions.follower import RegionsFollower
+from services.regions.partitioner import CutParams
 from services.regions.server import SERVICE_NAME, register
 from services.regions.service import Regions
 from services.regions.shelf import STAGE
@@ -35,10 +36,12 @@ async def serve(settings: Settings, store: Store) -> AsyncIterator[int]:
                 TableGrouper(PerceptionClient(perception)),
             ),
             settings.pace,
-            settings.partition,
+            CutParams(settings.partition, settings.staleness),
             settings.regions_checkpoint_frames,
         )
-        regions = Regions(store, settings.regions_recompute_timeout_s)
+        regions = Regions(
+            store, settings.regions_recompute_timeout_s, robot_radius=settings.regions_robot_radius
+        )
         async with (
             background("regions follower", lambda: follow_scenes(store, STAGE, follower.follow)),
             grpc_server(

@@ -31,9 +31,15 @@ class Vlm(Protocol):
     """The VLM gateway."""
 
     async def ask(
-        self, purpose: str, prompt: str, *, schema: dict[str, Any] | None = None, deadline_s: float = 0.0
+        self,
+        purpose: str,
+        prompt: str,
+        *,
+        schema: dict[str, Any] | None = None,
+        max_output_tokens: int = 0,
+        deadline_s: float = 0.0,
     ) -> VlmReply:
-        """A reply that satisfies `schema`; an OvipError where there is none to be had."""
+        """A reply that satisfies `schema`; an OvipError where there is none to be had. Zeros: the gateway's own."""
         ...
 
 

@@ -38,7 +38,16 @@ class RegionsServicer(regions_pb2_grpc.RegionsServiceServicer):
             yield pb.WatchRegionsResponse(partition=codec.partition_message(partition))
 
     async def GetFloorGrid(self, request: pb.GetFloorGridRequest, context: Any) -> pb.GetFloorGridResponse:
-        return codec.floor_grid_message(await self._regions.floor_grid(request.scene, request.floor))
+        return codec.floor_grid_message(
+            await self._regions.floor_grid(request.scene, request.floor, request.robot_radius)
+        )
+
+    async def PlanRoute(self, request: pb.PlanRouteRequest, context: Any) -> pb.PlanRouteResponse:
+        ends = codec.vector_value(request.start), codec.vector_value(request.goal)
+        return codec.route_message(await self._regions.route(request.scene, *ends, request.robot_radius))
+
+    async def GetRouteGraph(self, request: pb.GetRouteGraphRequest, context: Any) -> pb.GetRouteGraphResponse:
+        return codec.route_graph_message(await self._regions.route_graph(request.scene, request.robot_radius))
 
 
 def register(regions: Regions, server: grpc.aio.Server) -> None:

@@ -5,42 +5,47 @@ absence.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ovip.scene.answers import Coverage, FrameRecord, TierResult, Viewpoint
-from ovip.scene.grid import FloorGrid
+from ovip.scene.building import Building, floor_of, joined
 from ovip.scene.types import F64, Intrinsics
-from ovip.scene.walking import shortest_path
 from services.retrieval.case import Case, Ruling, choice
 from services.retrieval.domain.coverage import CoverageParams, View, assess
-from services.retrieval.domain.goals import NO_PATH, floor_of
+from services.retrieval.domain.goals import NO_PATH
 from services.retrieval.domain.query import ANYTHING
-from services.retrieval.domain.search import Search, Step, next_step, plan, viewpoint_id
+from services.retrieval.domain.search import (
+    SNAP_METRES,
+    Search,
+    Step,
+    Waypoint,
+    next_step,
+    plan,
+    viewpoint_id,
+)
 from services.retrieval.domain.viewpoints import HEADINGS, yaw_of
 from services.retrieval.tiers import is_unseeable
 
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """What an active search stands on: grids and floor heights by storey, and where the robot is."""
+    """What an active search stands on: the storeys with what joins them, and where the robot is."""
 
-    grids: Mapping[int, FloorGrid]
-    heights: Mapping[int, float]
+    building: Building
     place: F64 | None
     floor: int
 
 
 async def survey(case: Case) -> Ground:
-    """The grids, and the robot's place on them."""
+    """The building, and the robot's place in it."""
     floors = case.evidence.partition.floors
     start = await case.evidence.start(case.query.robot_pose)
     storey = floor_of(float(start[2]), floors) if start is not None else None
     return Ground(
-        grids=await case.evidence.grids(),
-        heights={floor.floor: floor.z for floor in floors},
+        building=await case.evidence.building(case.radius),
         place=start,
         floor=storey.floor if storey else (floors[0].floor if floors else 0),
     )
@@ -54,11 +59,9 @@ async def lay_out(case: Case, ground: Ground, search: Search) -> Search:
     waypoints = await asyncio.to_thread(
         plan,
         case.regions(),
-        ground.grids,
-        ground.heights,
+        ground.building,
         ground.place,
         ground.floor,
-        case.radius,
         case.limits.viewpoint,
     )
     return replace(
@@ -98,12 +101,10 @@ async def next_viewpoint(case: Case, ground: Ground, search: Search) -> Viewpoin
     """The next viewpoint with the way to it; None where the plan is carried out or nothing left can be
     reached.
     """
-    step = await asyncio.to_thread(
-        next_step, search, case.regions(), ground.grids, case.radius, case.limits.schedule
-    )
+    step = await asyncio.to_thread(next_step, search, case.regions(), ground.building, case.limits.schedule)
     if step is None:
         return None
-    return await asyncio.to_thread(_viewpoint, case, ground, search, step)
+    return await asyncio.to_thread(_viewpoint, ground, search, step)
 
 
 def view_from(record: FrameRecord, floor: int) -> View:
@@ -125,7 +126,7 @@ async def account(case: Case, ground: Ground, search: Search) -> Coverage:
         assess,
         regions,
         priors,
-        ground.grids,
+        ground.building.grids,
         search.views,
         (search.planned, search.visited, len(search.unreachable)),
         case.limits.viewpoint.reach,
@@ -133,7 +134,7 @@ async def account(case: Case, ground: Ground, search: Search) -> Coverage:
     )
 
 
-def _viewpoint(case: Case, ground: Ground, search: Search, step: Step) -> Viewpoint:
+def _viewpoint(ground: Ground, search: Search, step: Step) -> Viewpoint:
     done = search.visited + len(search.unreachable)
     return Viewpoint(
         viewpoint_id=viewpoint_id(step.waypoint, step.heading),
@@ -142,16 +143,18 @@ def _viewpoint(case: Case, ground: Ground, search: Search, step: Step) -> Viewpo
         region_id=step.waypoint.region_id,
         index=done + 1,
         total=search.planned,
-        path=_path(case, ground, search, step),
+        path=_path(ground.building, search, step.waypoint),
     )
 
 
-def _path(case: Case, ground: Ground, search: Search, step: Step) -> F64:
-    grid = ground.grids.get(step.waypoint.floor)
-    if grid is None or search.place is None or step.waypoint.floor != search.floor:
+def _path(building: Building, search: Search, waypoint: Waypoint) -> F64:
+    """The way from where the robot is, over stairs where it is on another storey."""
+    if search.place is None or search.floor not in building.grids or waypoint.floor not in building.grids:
         return NO_PATH
-    path = shortest_path(grid, search.place[:2], step.waypoint.position[:2], case.radius)
-    return np.column_stack([path, np.full(len(path), step.waypoint.position[2])])
+    start = building.nearest(search.place, search.floor, SNAP_METRES)
+    goal = building.nearest(waypoint.position, waypoint.floor, SNAP_METRES)
+    legs = building.legs(start, goal) if start is not None and goal is not None else ()
+    return joined(legs, [building.centres(leg) for leg in legs])
 
 
 def _itinerary(search: Search) -> str:

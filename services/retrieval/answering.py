@@ -11,10 +11,11 @@ from dataclasses import replace
 import numpy as np
 
 from ovip.scene.answers import Answer, Candidate, Outcome, TierReport, TierResult
+from ovip.scene.building import floor_of
 from ovip.scene.types import Floor
 from services.retrieval.case import MOST_CANDIDATES, Case, Ruling, choice, spoken
 from services.retrieval.domain.cascade import LAST_TIER
-from services.retrieval.domain.goals import NO_PATH, floor_of, way_to
+from services.retrieval.domain.goals import NO_PATH, way_to
 from services.retrieval.tiers import as_candidate
 
 
@@ -42,9 +43,9 @@ async def found(case: Case, reports: Sequence[TierReport], tier: int, ruling: Ru
     best, others = ruling.found[0], (*ruling.found[1:], *ruling.doubtful)
     box = best.box if best.box is not None else np.tile(best.position, 2)
     storey = _storey(case, best)
-    grid = await case.evidence.grid(storey.floor) if storey else None
+    building = await case.evidence.building(case.radius)
     start = await case.evidence.start(case.query.robot_pose)
-    way = await asyncio.to_thread(way_to, box, start, grid, storey.z if storey else 0.0, case.radius)
+    way = await asyncio.to_thread(way_to, box, start, building, storey.floor if storey else None)
     said = replace(best, why="; ".join(part for part in (best.why, way.why) if part))
     base = account(case, reports, Outcome.FOUND, tier)
     return replace(base, object=said, goal=way.goal, path=way.path, candidates=others[:MOST_CANDIDATES])

@@ -45,7 +45,8 @@ class Limits:
 class Ruling:
     """What a tier says. found: accepted, best first. doubtful: neither accepted nor rejected, best first.
 
-    unjudged: words of the question that this judge had no way to judge.
+    unjudged: words of the question that this judge had no way to judge. unexplored: where floor in reach ends at what
+    was never seen, in words.
     """
 
     result: TierResult
@@ -53,6 +54,7 @@ class Ruling:
     found: tuple[Candidate, ...] = ()
     doubtful: tuple[Candidate, ...] = ()
     unjudged: tuple[str, ...] = ()
+    unexplored: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,11 +4,13 @@ for it.
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ovip.errors import NotFound, Unavailable
 from ovip.scene.answers import FrameRecord
+from ovip.scene.building import Building
 from ovip.scene.grid import FloorGrid
 from ovip.scene.types import F32, F64, MapObject, Partition, Region, SceneMap
 from services.retrieval.domain.names import TextFeatures
@@ -87,6 +89,7 @@ class Evidence:
     notes: list[str] = field(default_factory=list)
     _frames: tuple[list[FrameRecord], Mapping[str, F32]] | None = None
     _grids: dict[int, FloorGrid | None] = field(default_factory=dict)
+    _buildings: dict[float, Building] = field(default_factory=dict)
 
     async def texts(self, words: Iterable[str]) -> TextFeatures | None:
         """Text features that hold the words; None where perception cannot give any."""
@@ -134,6 +137,23 @@ class Evidence:
         """Every storey's grid, those there are."""
         found = {floor.floor: await self.grid(floor.floor) for floor in self.partition.floors}
         return {floor: grid for floor, grid in found.items() if grid is not None and grid.occupancy.size}
+
+    async def building(self, radius: float) -> Building:
+        """Every storey with what joins them, for a robot of `radius` metres."""
+        if radius not in self._buildings:
+            grids = await self.grids()
+            self._buildings[radius] = await asyncio.to_thread(Building, self.partition, grids, radius)
+        return self._buildings[radius]
+
+    async def with_newest_regions(self) -> Evidence:
+        """The same look with the regions as they stand by now; this one where they are the same or out of reach."""
+        try:
+            partition = await self.sources.regions.get_partition(self.scene)
+        except (NotFound, Unavailable):
+            return self
+        if partition.revision == self.partition.revision:
+            return self
+        return replace(self, partition=partition, _grids={}, _buildings={})
 
     async def start(self, robot_pose: F64 | None) -> F64 | None:
         """Where the robot is `(3,)`: the query's pose, else the newest frame's camera; None where neither is

@@ -17,7 +17,7 @@ from ovip.scene.answers import (
     TierResult,
     TierStarted,
 )
-from services.retrieval import active, answering
+from services.retrieval import active, answering, unseen
 from services.retrieval.active import Ground
 from services.retrieval.case import MOST_CANDIDATES, Case, Ruling, ranked
 from services.retrieval.domain.query import ANYTHING
@@ -119,8 +119,10 @@ class RobotSearch:
                     continue
                 ruling = Ruling(TierResult.SKIPPED, f"cancelled after {stored.search.visited} viewpoints")
             if ruling is None:
+                lost = await unseen.out_of_reach(self._case, self._ground.building, stored.search)
                 stored = await self._logbook.change(stored, give_up_rest)
-                ruling, outcome = self._exhausted(stored.search)
+                ruling, outcome = self._exhausted(stored.search, lost)
+                ruling = await self._with_unexplored(stored.search, ruling, outcome)
             report = self._report(ruling)
             yield report
             answer = await self._answer(stored.search, report, ruling, outcome)
@@ -168,13 +170,14 @@ class RobotSearch:
             return Ruling(TierResult.EXHAUSTED, why, (), doubtful), Outcome.UNRESOLVED
         return None, Outcome.UNRESOLVED
 
-    def _exhausted(self, search: Search) -> tuple[Ruling, Outcome]:
+    def _exhausted(self, search: Search, lost: str) -> tuple[Ruling, Outcome]:
         """Every viewpoint is visited or unreachable and nothing was confirmed: absent, unless nothing was
-        looked at.
+        looked at. lost: why what was left could not be reached, if any was.
         """
         doubtful = ranked([doubt.candidate for doubt in self._case.doubts.values()])
         seen = (
             f"{search.visited} of {search.planned} viewpoints visited, {len(search.unreachable)} unreachable"
+            + (f" ({lost})" if lost else "")
         )
         if search.visited and search.blind == search.visited:
             why = f"{seen}; whoever looked may have no way to see {self._case.target.noun!r}"
@@ -187,6 +190,14 @@ class RobotSearch:
             ), Outcome.UNRESOLVED
         return Ruling(TierResult.MISSING, f"{seen}; nothing voted for and confirmed"), Outcome.ABSENT
 
+    async def _with_unexplored(self, search: Search, ruling: Ruling, outcome: Outcome) -> Ruling:
+        """An absence says where the robot could still go and see what nobody has seen."""
+        if outcome is not Outcome.ABSENT:
+            return ruling
+        beyond = await unseen.unexplored(self._case, search)
+        told = f"{ruling.why}; unexplored floor begins {beyond}" if beyond else ruling.why
+        return replace(ruling, why=told, unexplored=beyond)
+
     def _report(self, ruling: Ruling) -> TierReport:
         spent = (self._clock() - self._began) * 1e3
         return TierReport(4, ruling.result, ruling.why, self._case.judge.vlm.calls - self._calls, spent)
@@ -198,7 +209,10 @@ class RobotSearch:
         if ruling.found:
             return replace(await answering.found(case, reports, 4, ruling), coverage=coverage)
         base = answering.account(case, reports, outcome, 4)
-        needs = "" if outcome is Outcome.ABSENT else active.still_needs(case, search, ruling)
+        if outcome is Outcome.ABSENT:
+            needs = f"a look at what nobody has seen: {ruling.unexplored}" if ruling.unexplored else ""
+        else:
+            needs = active.still_needs(case, search, ruling)
         return replace(base, coverage=coverage, candidates=ruling.doubtful[:MOST_CANDIDATES], needs=needs)
 
     def _kept(self, search: Search) -> Search:

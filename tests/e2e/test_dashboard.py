@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from collections.abc import Iterator
@@ -105,3 +106,33 @@ def test_what_is_not_there_is_said_with_what_it_would_take(page: Any) -> None:
     assert "viewpoints" in page.text_content(at("answer-needs"))
     for tier in (1, 2, 3, 4):
         assert page.text_content(at(f"tier-{tier}"))
+
+
+def test_the_regions_are_listed_with_their_areas_and_one_clicked_is_marked(page: Any) -> None:
+    page.click(at("tab-regions"))
+    rows = page.locator(at("region-item"))
+    playwright.expect(rows.first).to_contain_text("m²")
+    rows.first.click()
+    marked = page.locator(f"{at('plan-region')}[data-current='true']")
+    playwright.expect(marked).to_have_attribute("data-id", rows.first.get_attribute("data-id"))
+
+
+def test_the_command_line_draws_the_same_regions_and_writes_maps_for_robots(
+    cli: Cli, stack: dict[str, Any], mapped: dict[str, Any], tmp_path: Path
+) -> None:
+    said = cli.json(
+        *("regions", SCENE, "--recompute", "--data-dir", stack["data"]),
+        *(
+            "--plot",
+            tmp_path / "plan.png",
+            "--polygons",
+            tmp_path / "rooms.json",
+            "--nav2",
+            tmp_path / "maps",
+        ),
+    )
+    assert len(said["regions"]) == mapped["regions"]
+    assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "maps" / "floor-0.yaml").read_text().startswith("image: floor-0.pgm\n")
+    polygons = json.loads((tmp_path / "rooms.json").read_text())
+    assert [feature["id"] for feature in polygons["features"]] == [r["region_id"] for r in said["regions"]]

@@ -198,7 +198,8 @@ def _plain(s: Searched) -> Row:
 
 def _reasons(searched: Sequence[Searched]) -> tuple[str, ...]:
     """Why searches for absent things were left open, with how often."""
-    needs = [s.needs.split("'")[0].strip() for s in searched if not s.question.present and s.needs]
+    left_open = [s for s in searched if not s.question.present and not s.declared_absent and s.needs]
+    needs = [s.needs.split("'")[0].strip() for s in left_open]
     return tuple(
         f"left open where nothing is there, {needs.count(why)} of {len(searched)} searches: needs {why}"
         for why in dict.fromkeys(needs)

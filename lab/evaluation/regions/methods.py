@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from services.regions.domain.baselines.auto_k import auto_k_rooms
 from services.regions.domain.baselines.hovsg import hovsg_rooms
 from services.regions.domain.baselines.sysnav import sysnav_rooms
 from services.regions.domain.functions import functions_of
-from services.regions.domain.partition import UNKNOWN_FUNCTION, PartitionParams, Relief
+from services.regions.domain.partition import UNKNOWN_FUNCTION, PartitionParams
 from services.regions.domain.survey import SurveyedStorey, storeys_of_objects
 
 Surveyed = tuple[SurveyedStorey, ...]
@@ -37,25 +38,28 @@ Method = Callable[[FloorPlace, Surveyed], tuple[StoreyRegions, ...]]
 
 
 def kgsw(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
-    """As the service cuts: functions by the table, its own settings' numbers and relief."""
-    return _assembled(place, surveyed, _table_functions(place, surveyed), service_params())
+    """As the service cuts: functions by the table, its own settings' numbers."""
+    return assembled(place, surveyed, _table_functions(place, surveyed), service_params())
+
+
+def kgsw_to_the_letter(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
+    """With the paper's own numbers and nothing beyond its Algorithm 1."""
+    return assembled(place, surveyed, _table_functions(place, surveyed), PartitionParams())
 
 
 def kgsw_oracle_functions(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
     """Where every object's function is that of the area it is truly in: what a perfect grouping would give."""
-    return _assembled(place, surveyed, true_functions(place, surveyed), service_params())
+    return assembled(place, surveyed, true_functions(place, surveyed), service_params())
 
 
-def kgsw_clearance_relief(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
-    """With the paper's -D as the last watershed's relief."""
-    params = replace(service_params(), relief=Relief.CLEARANCE)
-    return _assembled(place, surveyed, _table_functions(place, surveyed), params)
+def ours_but(**paper: Any) -> Method:
+    """As the service cuts, some of its numbers the paper's."""
 
+    def method(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
+        functions = _table_functions(place, surveyed)
+        return assembled(place, surveyed, functions, replace(service_params(), **paper))
 
-def kgsw_closed_doors(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
-    """With cores that end at doors: 9 cells (0.45 m) of dilation close an opening of 0.9 m, the paper's 6 do not."""
-    params = replace(service_params(), dilation=9)
-    return _assembled(place, surveyed, _table_functions(place, surveyed), params)
+    return method
 
 
 def hovsg(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
@@ -69,7 +73,7 @@ def sysnav(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
 
 
 def auto_k(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
-    """Clusters of the same objects, grown over the same free space with the same relief as KGSW's."""
+    """Clusters of the same objects, grown over the same free space in the same way as KGSW's."""
     storeys = storeys_of_objects(surveyed, place.objects.centres)
     regions = []
     for number, here in enumerate(surveyed):
@@ -79,26 +83,25 @@ def auto_k(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
     return tuple(regions)
 
 
+_PAPER = PartitionParams()
 METHODS: dict[str, Method] = {
     "KGSW": kgsw,
     "KGSW oracle functions": kgsw_oracle_functions,
-    "KGSW -D relief": kgsw_clearance_relief,
-    "KGSW DIL 9": kgsw_closed_doors,
+    "KGSW to the letter": kgsw_to_the_letter,
+    "KGSW, paper's DIL": ours_but(dilation=_PAPER.dilation),
+    "KGSW, paper's growth": ours_but(growth=_PAPER.growth),
+    "KGSW, no voting": ours_but(votes=_PAPER.votes),
+    "KGSW, no merging": ours_but(merge_width=_PAPER.merge_width),
     "HOV-SG": hovsg,
     "SysNav": sysnav,
     "auto-K": auto_k,
 }
+"""Ours, what it would be with perfect functions, the paper's own, ours without each thing that it adds; baselines."""
 
 
 def service_params() -> PartitionParams:
     """The numbers that the service runs with where nobody sets any."""
-    fields = Settings.model_fields
-    return PartitionParams(
-        **{
-            name: fields[f"regions_{name}"].default
-            for name in ("dilation", "marker_radius", "eps", "min_core", "min_unknown", "relief")
-        }
-    )
+    return Settings.model_construct().partition
 
 
 def true_functions(place: FloorPlace, surveyed: Surveyed) -> tuple[str, ...]:
@@ -136,10 +139,11 @@ def _table_functions(place: FloorPlace, surveyed: Surveyed) -> tuple[str, ...]:
     return tuple(functions)
 
 
-def _assembled(
+def assembled(
     place: FloorPlace, surveyed: Surveyed, functions: tuple[str, ...], params: PartitionParams
 ) -> tuple[StoreyRegions, ...]:
-    cut = assemble(surveyed, place.objects, functions, place.evidence.cameras, Cut.none(), params)
+    """The service's assembly of objects with these functions."""
+    cut = assemble(surveyed, place.objects, functions, place.evidence, Cut.none(), params)
     of_region = {region.region_id: region.function for region in cut.partition.regions}
     return tuple(
         StoreyRegions(grid.regions.astype(np.int32), tuple(of_region[i] for i in grid.region_ids), {})

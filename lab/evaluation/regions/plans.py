@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from lab.evaluation.experiment import Row
+from lab.evaluation.regions.diagnosis import Diagnosis
 from lab.evaluation.regions.floors import RegionTruth
 from lab.evaluation.regions.methods import StoreyRegions, cells_of
 from lab.evaluation.regions.rows import Ground
@@ -18,7 +19,7 @@ from lab.simulation.home import Area, inside_polygon
 from ovip.scene.types import F64, I32, Bools
 from services.regions.domain.survey import SurveyedStorey, storeys_of_objects
 
-DRAWN = ("KGSW", "KGSW -D relief", "HOV-SG", "SysNav", "auto-K")
+DRAWN = ("KGSW", "KGSW to the letter", "HOV-SG", "SysNav", "auto-K")
 _DOOR_STEP = 0.5  # metres that a door's foot may be from the floor it stands on
 Grid = TypeVar("Grid", I32, Bools)
 
@@ -37,9 +38,16 @@ class StoreyPlans:
 
 
 def storey_plans(
-    ground: Ground, cuts: Mapping[str, tuple[StoreyRegions, ...]], rows: Mapping[str, Row]
+    ground: Ground,
+    cuts: Mapping[str, tuple[StoreyRegions, ...]],
+    rows: Mapping[str, Row],
+    diagnosis: Diagnosis | None = None,
 ) -> tuple[StoreyPlans, ...]:
-    """Truth and methods of each storey; rows: each method's figures for the home, printed below."""
+    """Truth and methods of each storey; rows: each method's figures for the home, printed below.
+
+    diagnosis: what became of the true areas, written into them.
+    """
+    verdicts = {area.area_id: area.verdict.value for area in diagnosis.areas} if diagnosis else {}
     truth = ground.place.truth
     storeys = storeys_of_objects(ground.surveyed, ground.place.objects.centres)
     pages = []
@@ -61,7 +69,7 @@ def storey_plans(
                     dots,
                     _doors(truth, here),
                 ),
-                (_true_plan(canvas, areas), *methods),
+                (_true_plan(canvas, areas, verdicts), *methods),
             )
         )
     return tuple(pages)
@@ -105,13 +113,15 @@ def _method_plan(name: str, canvas: _Canvas, regions: StoreyRegions, row: Row) -
     return Plan(name, canvas.put(regions.labels), regions.functions, note)
 
 
-def _true_plan(canvas: _Canvas, areas: Sequence[Area]) -> Plan:
+def _true_plan(canvas: _Canvas, areas: Sequence[Area], verdicts: Mapping[int, str]) -> Plan:
     labels: I32 = np.zeros(canvas.shape, np.int32)
     rows, columns = np.indices(canvas.shape)
     centres = (np.stack([columns, rows], axis=-1).reshape(-1, 2) + 0.5) * canvas.resolution
     for number, area in enumerate(areas, start=1):
         labels.ravel()[inside_polygon(area.polygon, centres + np.asarray(canvas.origin))] = number
-    return Plan("truth", labels, tuple(area.function for area in areas), f"{len(areas)} areas")
+    names = tuple(area.function for area in areas)
+    under = tuple(verdicts.get(area.area_id, "") for area in areas)
+    return Plan("truth", labels, names, f"{len(areas)} areas", under)
 
 
 def _doors(truth: RegionTruth, here: SurveyedStorey) -> F64:

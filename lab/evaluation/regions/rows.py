@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,8 +23,8 @@ from ovip.scene.grid import FREE, FloorGrid
 from ovip.scene.types import F64, I32, I64, Bools
 from ovip.scene.walking import traversable
 from ovip.scene.words import normalize_word
+from services.regions.domain.cells import labels_at
 from services.regions.domain.functions import FUNCTIONS, prior_of
-from services.regions.domain.partition import regions_at
 from services.regions.domain.survey import SurveyedStorey, storeys_of_objects
 from services.retrieval.domain.viewpoints import plan_waypoints
 
@@ -99,24 +100,36 @@ def score_regions(
 def seen_share(ground: Ground) -> float:
     """What share of the true areas' floor the walk saw as floor, 0..1."""
     truth = rooms_of(ground.place.truth.areas)
-    seen = 0
+    sizes = np.array([len(room.points) for room in truth], np.float64)
+    return float((sizes * seen_of(ground, truth)).sum() / max(sizes.sum(), 1))
+
+
+def seen_of(ground: Ground, rooms: Sequence[Room]) -> F64:
+    """What share of each of G rooms is free space of the survey `(G,)`, 0..1."""
+    seen = np.zeros(len(rooms))
     for here, floor in zip(ground.surveyed, ground.floors, strict=True):
-        points = np.concatenate([np.zeros((0, 2)), *(room.points for room in truth if room.floor == floor)])
-        cells = np.rint(cells_of(here, points)).astype(int)
-        inside = ((cells >= 0) & (cells < here.space.free.shape)).all(axis=1)
-        seen += int(here.space.free[tuple(cells[inside].T)].sum())
-    return seen / max(sum(len(room.points) for room in truth), 1)
+        for k, room in enumerate(rooms):
+            if room.floor == floor:
+                cells = np.rint(cells_of(here, room.points)).astype(int)
+                inside = ((cells >= 0) & (cells < here.space.free.shape)).all(axis=1)
+                seen[k] += here.space.free[tuple(cells[inside].T)].sum() / len(room.points)
+    return seen
 
 
 def predicted_rooms(ground: Ground, cut: tuple[StoreyRegions, ...]) -> list[Room]:
     """Every region as a cloud of its cells on the true storey nearest to it; empty ones are left out."""
+    return [room for _, room in named_rooms(ground, cut)]
+
+
+def named_rooms(ground: Ground, cut: tuple[StoreyRegions, ...]) -> list[tuple[str, Room]]:
+    """The same, each with its region's function."""
     rooms = []
     for here, floor, regions in zip(ground.surveyed, ground.floors, cut, strict=True):
-        for label in range(1, len(regions.functions) + 1):
+        for label, function in enumerate(regions.functions, start=1):
             cells = np.argwhere(regions.labels == label)
             if len(cells):
                 points = (cells[:, ::-1] + 0.5) * here.space.resolution + np.asarray(here.space.origin)
-                rooms.append(Room(floor, points))
+                rooms.append((function, Room(floor, points)))
     return rooms
 
 
@@ -130,7 +143,7 @@ def units_of(ground: Ground, cut: tuple[StoreyRegions, ...]) -> Units:
         floor.append(np.full(count, number))
         area.append(_counts(regions.labels[here.space.free], count))
         viewpoints.append(_counts(regions.labels[tuple(ground.waypoints[number].T)], count))
-        objects.append(_counts(regions_at(regions.labels, mine) + 1, count))
+        objects.append(_counts(labels_at(regions.labels, mine) + 1, count))
         whole.append((here.space.free.sum(), len(ground.waypoints[number]), len(mine)))
     total = np.array(whole, dtype=np.float64).reshape(-1, 3)
     return Units(
@@ -164,7 +177,7 @@ def _routes_by_label(ground: Ground, cut: tuple[StoreyRegions, ...]) -> list[tup
     first = 0
     for number, (here, regions) in enumerate(zip(ground.surveyed, cut, strict=True)):
         mine = np.flatnonzero(storeys == number)
-        at = regions_at(regions.labels, cells_of(here, objects.centres[mine]))
+        at = labels_at(regions.labels, cells_of(here, objects.centres[mine]))
         for member, region in zip(mine.tolist(), at.tolist(), strict=True):
             if region != NOWHERE:
                 found.setdefault(normalize_word(objects.labels[member]), set()).add(first + region)

@@ -1,4 +1,5 @@
-"""A storey drawn as a PNG: free space, walls, coloured regions with their names, objects."""
+"""Floors drawn as a PNG: regions in their functions' colours with names and areas, walls, doorways, stairs, frontiers,
+objects, and a scale."""
 
 from __future__ import annotations
 
@@ -7,153 +8,218 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from ovip.errors import InvalidInput
-from ovip.scene.grid import FREE, OCCUPIED, UNKNOWN, FloorGrid
-from ovip.scene.types import F64, U8, MapObject, Region
-from services.api.domain.palette import region_colors, rgb
+from ovip.scene.types import EdgeKind
+from services.api.domain.labels import Label
+from services.api.domain.lettering import Line, measure, write, write_from
+from services.api.domain.palette import DOOR, FLOOR, FRONTIER, HAZE, INK, PAPER, SOFT, STAIRS, mixed
+from services.api.domain.plan_drawing import draw_floor, enclosed_unknown
+from services.api.domain.plan_sheet import PlanFrame, PlanSheet
+from services.api.domain.plan_words import area_words, words_of
 
-GREY_OF = {UNKNOWN: 205, FREE: 254, OCCUPIED: 0}
-_PAPER, _FREE, _WALL, _INK = (238, 237, 233), (255, 255, 255), (139, 149, 163), (33, 41, 54)
-_MARGIN_CELLS = 6
-_MAX_SIDE = 6000
-_TINT = 0.34
+MAX_SIDE = 6000
+"""Pixels: a larger picture is refused."""
+_COMFORTABLE = 2800
+"""Pixels: without a scale given, no side of a floor is larger."""
+_DRAWN_FINER = ((3_000_000, 3), (8_000_000, 2))
+"""Pictures of up to so many pixels are drawn so many times larger, then shrunk."""
+_EDGE, _HEAD, _FOOT = 28, 20, 15
+_BAR = (80.0, 170.0)
+_LEAST_UNSEEN = 0.25
+"""Square metres of hatching that the signs explain."""
+_NICE = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 
 
 @dataclass(frozen=True, slots=True)
 class PlanParams:
-    """Scale in pixels a metre; the least extent in metres that gives an object its label."""
+    """Pixels a metre; None: 80, or fewer where a floor would be larger than 2800 pixels on a side."""
 
-    pixels_per_metre: float = 80.0
-    font_px: int = 13
-
-
-def draw_floorplan(
-    grid: FloorGrid,
-    regions: Sequence[Region],
-    objects: Sequence[MapObject],
-    params: PlanParams = PlanParams(),
-) -> bytes:
-    """The grid's known part as PNG bytes, larger y up, with the objects that stand on this floor."""
-    rows, columns = _known(grid)
-    factor = params.pixels_per_metre * grid.resolution
-    size = (round((columns.stop - columns.start) * factor), round((rows.stop - rows.start) * factor))
-    if max(size) > _MAX_SIDE:
-        raise InvalidInput(
-            f"scale: the plan would be {size[0]} x {size[1]} pixels, expected at most {_MAX_SIDE} on a side"
-        )
-    colors = region_colors(regions)
-    picture = Image.fromarray(_cells(grid, colors)[rows, columns][::-1]).resize(
-        (max(size[0], 1), max(size[1], 1)), Image.Resampling.NEAREST
-    )
-    pen = _Pen(picture, _corner(grid, rows, columns), params)
-    for obj in sorted(objects, key=lambda obj: float(obj.box[2])):
-        pen.footprint(obj)
-    taken: list[tuple[float, float, float, float]] = []
-    for region in regions:
-        pen.write(region.display_name, region.centroid[:2], params.font_px + 3, taken)
-    for obj in sorted(objects, key=lambda obj: -obj.observations):
-        pen.write(obj.label, obj.centroid[:2], params.font_px, taken)
-    return _png(picture)
+    pixels_per_metre: float | None = None
+    most_pixels_per_metre: float = 80.0
 
 
-def occupancy_png(grid: FloorGrid) -> bytes:
-    """Occupancy as 8-bit grey (unknown 205, free 254, occupied 0); first image row = grid row 0."""
-    lookup = np.zeros(256, dtype=np.uint8)
-    for cell, grey in GREY_OF.items():
-        lookup[cell] = grey
-    return _png(Image.fromarray(lookup[grid.occupancy]))
+def draw_floorplans(sheets: Sequence[PlanSheet], params: PlanParams | None = None) -> bytes:
+    """One picture a floor, larger y up, side by side in one PNG, all to one scale.
 
-
-def regions_png(grid: FloorGrid) -> bytes:
-    """Region labels as 16-bit grey (0 none, else 1 + index into region_ids); first image row = row 0."""
-    return _png(Image.fromarray(grid.regions.astype(np.uint16)))
-
-
-def _cells(grid: FloorGrid, colors: dict[str, str]) -> U8:
-    """One colour a cell, `(R, C, 3)`."""
-    image = np.empty((*grid.occupancy.shape, 3), dtype=np.float64)
-    image[:] = _PAPER
-    image[grid.occupancy == FREE] = _FREE
-    tints = np.array(
-        [_FREE, *(rgb(colors.get(region_id, "#ffffff")) for region_id in grid.region_ids)], dtype=np.float64
-    )
-    inside = (grid.regions > 0) & (grid.occupancy != OCCUPIED)
-    image[inside] = (1 - _TINT) * np.array(_FREE) + _TINT * tints[grid.regions[inside]]
-    image[grid.occupancy == OCCUPIED] = _WALL
-    return np.round(image).astype(np.uint8)
-
-
-def _known(grid: FloorGrid) -> tuple[slice, slice]:
-    """The rows and columns that hold anything known, with a margin; all of them where nothing is."""
-    known = grid.occupancy != UNKNOWN
-    if not known.any():
-        return slice(0, grid.occupancy.shape[0]), slice(0, grid.occupancy.shape[1])
-    return _span(known.any(axis=1)), _span(known.any(axis=0))
-
-
-def _span(known: np.ndarray) -> slice:
-    places = np.flatnonzero(known)
-    return slice(max(0, int(places[0]) - _MARGIN_CELLS), min(len(known), int(places[-1]) + 1 + _MARGIN_CELLS))
-
-
-def _corner(grid: FloorGrid, rows: slice, columns: slice) -> F64:
-    """World x, y of the upper left corner of the picture."""
-    return np.array(
-        [grid.origin[0] + columns.start * grid.resolution, grid.origin[1] + rows.stop * grid.resolution]
-    )
-
-
-class _Pen:
-    """Draws in world metres on a picture whose upper left corner is at `corner`."""
-
-    def __init__(self, picture: Image.Image, corner: F64, params: PlanParams) -> None:
-        self._size = picture.size
-        self._draw = ImageDraw.Draw(picture, "RGBA")
-        self._corner = corner
-        self._scale = params.pixels_per_metre
-
-    def footprint(self, obj: MapObject) -> None:
-        x0, y1 = self._pixel(obj.box[:2])
-        x1, y0 = self._pixel(obj.box[3:5])
-        ink = tuple(round(float(value)) for value in np.nan_to_num(obj.mean_color))
-        self._draw.rectangle(
-            (x0, y0, max(x1, x0 + 3), max(y1, y0 + 3)), fill=(*ink, 225), outline=(*_INK, 200)
-        )
-
-    def write(self, text: str, at: F64, size: int, taken: list[tuple[float, float, float, float]]) -> None:
-        """Centred, unless it would cover what is already written."""
-        font = ImageFont.load_default(size)
-        x, y = self._pixel(at)
-        left, top, right, bottom = self._draw.textbbox((x, y), text, font=font, anchor="mm")
-        shift = min(0.0, self._size[0] - 2 - right) + max(0.0, 2 - left)
-        place = (left + shift - 2, top - 1, right + shift + 2, bottom + 1)
-        if any(_overlap(place, other) for other in taken):
-            return
-        taken.append(place)
-        self._draw.text(
-            (x + shift, y),
-            text,
-            font=font,
-            anchor="mm",
-            fill=_INK,
-            stroke_width=2,
-            stroke_fill=(255, 255, 255),
-        )
-
-    def _pixel(self, xy: F64) -> tuple[float, float]:
-        return (
-            float((xy[0] - self._corner[0]) * self._scale),
-            float((self._corner[1] - xy[1]) * self._scale),
-        )
-
-
-def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
-
-
-def _png(picture: Image.Image) -> bytes:
+    InvalidInput where a side would be larger than 6000 pixels.
+    """
+    scale = _scale(sheets, params or PlanParams())
+    frames = [PlanFrame.around(sheet.grid, scale) for sheet in sheets]
+    _check(frames)
+    pages = [_page(sheet, frame) for sheet, frame in zip(sheets, frames, strict=True)]
     stream = io.BytesIO()
-    picture.save(stream, format="PNG")
+    _side_by_side(pages).save(stream, format="PNG", compress_level=4)
     return stream.getvalue()
+
+
+def _scale(sheets: Sequence[PlanSheet], params: PlanParams) -> float:
+    if params.pixels_per_metre is not None:
+        return params.pixels_per_metre
+    extents = [_metres(sheet) for sheet in sheets]
+    limits = (
+        _COMFORTABLE / max(max(extent) for extent in extents),
+        0.9 * MAX_SIDE / sum(width for width, _ in extents),
+    )
+    return min(params.most_pixels_per_metre, *limits)
+
+
+def _metres(sheet: PlanSheet) -> tuple[float, float]:
+    """Width and height of what a plan shows."""
+    frame = PlanFrame.around(sheet.grid, 1.0)
+    cells = frame.columns.stop - frame.columns.start, frame.rows.stop - frame.rows.start
+    return cells[0] * sheet.grid.resolution, cells[1] * sheet.grid.resolution
+
+
+def _check(frames: Sequence[PlanFrame]) -> None:
+    width, height = sum(frame.size[0] for frame in frames), max(frame.size[1] for frame in frames)
+    if max(width, height) > MAX_SIDE:
+        raise InvalidInput(
+            f"scale: the plan would be {width} x {height} pixels, expected at most {MAX_SIDE} on a side"
+        )
+
+
+def _side_by_side(pages: Sequence[Image.Image]) -> Image.Image:
+    size = (sum(page.width for page in pages), max(page.height for page in pages))
+    whole = Image.new("RGB", size, PAPER)
+    x = 0
+    for page in pages:
+        whole.paste(page, (x, 0))
+        x += page.width
+    return whole
+
+
+def _page(sheet: PlanSheet, frame: PlanFrame) -> Image.Image:
+    """The plan with a heading above and the scale and signs below."""
+    pixels = frame.size[0] * frame.size[1]
+    plan = draw_floor(sheet, frame, next((finer for most, finer in _DRAWN_FINER if pixels <= most), 1))
+    _write_words(plan, sheet, frame)
+    width = max(plan.width, 260 + 2 * _EDGE)
+    head = _heading(sheet, width - 2 * _EDGE)
+    foot = _signs(sheet, frame, width - 2 * _EDGE)
+    top = _EDGE + round(measure(head)[1])
+    page = Image.new("RGB", (width, top + plan.height + foot.height + _EDGE // 2), PAPER)
+    page.paste(plan, ((width - plan.width) // 2, top))
+    page.paste(foot, (_EDGE, top + plan.height))
+    draw = ImageDraw.Draw(page)
+    y = float(_EDGE) * 0.7
+    for number, line in enumerate(head):
+        height = measure((line,))[1]
+        write_from(draw, line, (_EDGE, y + height / 2), SOFT if number else INK)
+        y += height
+    return page
+
+
+def _write_words(plan: Image.Image, sheet: PlanSheet, frame: PlanFrame) -> None:
+    words = words_of(sheet, frame)
+    draw = ImageDraw.Draw(plan)
+    for label in words.regions:
+        if label.leader is not None:
+            _leader(draw, label)
+    for label in words.objects:
+        write(draw, label.lines, label.box, (mixed(INK, FLOOR, 0.15),), FLOOR)
+    for label in words.marks:
+        ink = FRONTIER if label.lines[0].text == "unexplored" else SOFT
+        write(draw, label.lines, label.box, (ink,), FLOOR)
+    for label in words.regions:
+        names = len(label.lines) - (len(label.lines) > 1)
+        write(draw, label.lines, label.box, (*(INK,) * names, SOFT), FLOOR)
+
+
+def _leader(draw: ImageDraw.ImageDraw, label: Label) -> None:
+    """A thin line from the words to the place they speak of, with a dot there."""
+    assert label.leader is not None
+    x0, y0, x1, y1 = label.box
+    x, y = label.leader
+    start = (min(max(x, x0), x1), min(max(y, y0), y1))
+    draw.line([start, (x, y)], fill=SOFT, width=1)
+    draw.ellipse((x - 2.5, y - 2.5, x + 2.5, y + 2.5), fill=SOFT)
+
+
+def _heading(sheet: PlanSheet, width: int) -> tuple[Line, ...]:
+    floor, partition = sheet.floor, sheet.partition
+    ceiling = "no ceiling seen" if floor.ceiling_z is None else f"ceiling at {floor.ceiling_z:.2f} m"
+    count = len(sheet.regions)
+    facts = [
+        f"{area_words(floor.area)} in {count} region{'' if count == 1 else 's'}",
+        f"floor at {floor.z + 0.0:.2f} m, {ceiling}",
+        f"map version {partition.map_version}, regions revision {partition.revision}",
+    ]
+    lines = [Line(f"{sheet.scene}, floor {floor.floor}", _HEAD)]
+    for fact in facts:
+        joined = Line(f"{lines[-1].text}  |  {fact}", _FOOT)
+        if len(lines) > 1 and measure((joined,))[0] <= width:
+            lines[-1] = joined
+        else:
+            lines.append(Line(fact, _FOOT))
+    return tuple(lines)
+
+
+def _signs(sheet: PlanSheet, frame: PlanFrame, width: int) -> Image.Image:
+    """The scale bar, then what the marks on this floor mean, in as many rows as that takes."""
+    signs = [
+        (kind, word)
+        for kind, word, there in (
+            ("doorway", "doorway", sheet.passages(EdgeKind.DOORWAY)),
+            ("stairs", "stairs", sheet.passages(EdgeKind.STAIRS)),
+            ("frontier", "unexplored beyond", sheet.frontiers),
+            ("unseen", "never seen", _worth_a_sign(sheet)),
+        )
+        if there
+    ]
+    metres = _bar_metres(frame.scale)
+    places: list[tuple[int, int]] = []
+    x, row = round(metres * frame.scale) + 84, 0
+    for _, word in signs:
+        need = 34 + round(measure((Line(word, _FOOT - 2),))[0])
+        if x + need > width and x > 0:
+            x, row = 0, row + 1
+        places.append((x, row))
+        x += need + 22
+    foot = Image.new("RGB", (width, 30 * (row + 1)), PAPER)
+    draw = ImageDraw.Draw(foot)
+    _bar(draw, metres, frame.scale)
+    for (kind, word), (at, line) in zip(signs, places, strict=True):
+        y = 15 + 30 * line
+        _sign(draw, kind, at, y)
+        write_from(draw, Line(word, _FOOT - 2), (at + 34, y), SOFT)
+    return foot
+
+
+def _worth_a_sign(sheet: PlanSheet) -> bool:
+    return bool(enclosed_unknown(sheet).sum() * sheet.grid.resolution**2 >= _LEAST_UNSEEN)
+
+
+def _bar_metres(scale: float) -> float:
+    fitting = [metres for metres in _NICE if _BAR[0] <= metres * scale <= _BAR[1]]
+    return fitting[-1] if fitting else min(_NICE, key=lambda metres: abs(metres * scale - _BAR[0]))
+
+
+def _bar(draw: ImageDraw.ImageDraw, metres: float, scale: float) -> None:
+    length = metres * scale
+    draw.line([(0, 15), (length, 15)], fill=INK, width=2)
+    for x in (0.0, length):
+        draw.line([(x, 10), (x, 20)], fill=INK, width=2)
+    write_from(draw, Line(f"{metres:g} m", _FOOT - 1), (length + 9, 15), INK)
+
+
+def _sign(draw: ImageDraw.ImageDraw, kind: str, x: int, y: int) -> None:
+    if kind == "doorway":
+        draw.line([(x, y), (x + 26, y)], fill=DOOR, width=2)
+        for end in (x, x + 26):
+            draw.line([(end, y - 6), (end, y + 6)], fill=DOOR, width=2)
+    elif kind == "stairs":
+        for at in np.arange(x, x + 27, 6).tolist():
+            draw.line([(at, y - 6), (at, y + 6)], fill=STAIRS, width=2)
+    elif kind == "frontier":
+        for at in range(x, x + 26, 10):
+            draw.line([(at, y), (at + 6, y)], fill=FRONTIER, width=3)
+    else:
+        draw.rectangle((x, y - 8, x + 26, y + 8), fill=FLOOR, outline=HAZE)
+        for at in range(x + 2, x + 26, 6):
+            draw.line(
+                [(at, y + 7), (min(at + 14, x + 25), max(y + 7 - 14, y + 7 + at - x - 25))],
+                fill=HAZE,
+                width=1,
+            )

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from ovip.answer_json import OutputFrame, number, numbers, object_to_json
+from ovip.jsonable import to_json
 from ovip.scene.answers import FrameRecord
-from ovip.scene.types import F64, Floor, Partition, Region, RegionEdge, SceneMap
+from ovip.scene.types import F64, Floor, Frontier, Partition, Region, RegionEdge, SceneMap
 from services.api.domain.palette import region_colors
 
 
@@ -26,6 +27,8 @@ def partition_to_json(partition: Partition, frame: OutputFrame) -> dict[str, Any
             for region in partition.regions
         ],
         "edges": [_edge(edge, frame) for edge in partition.edges],
+        "frontiers": [_frontier(frontier, frame) for frontier in partition.frontiers],
+        "events": to_json(partition.events),
         "fallbacks": list(partition.fallbacks),
     }
 
@@ -58,6 +61,8 @@ def graph_to_json(scene_map: SceneMap, partition: Partition, frame: OutputFrame)
             for floor in flat["floors"]
         ],
         "edges": flat["edges"],
+        "frontiers": flat["frontiers"],
+        "events": flat["events"],
         "unplaced": [short(object_id) for object_id in objects if object_id not in placed],
         "fallbacks": flat["fallbacks"],
     }
@@ -86,7 +91,7 @@ def scene_graph_to_json(scene_map: SceneMap, partition: Partition, frame: Output
     }
 
 
-def frame_to_json(record: FrameRecord, frame: OutputFrame) -> dict[str, Any]:
+def frame_to_json(record: FrameRecord, frame: OutputFrame, region_id: str | None) -> dict[str, Any]:
     """A frame of the history: when, from where, with which camera, and the words seen in it."""
     pose = frame.pose(record.world_from_camera)
     camera = record.intrinsics
@@ -94,6 +99,7 @@ def frame_to_json(record: FrameRecord, frame: OutputFrame) -> dict[str, Any]:
         "frame_id": record.frame_id,
         "timestamp_ns": record.timestamp_ns,
         "position": numbers(pose[:3, 3]),
+        "region_id": region_id,
         "pose": np.asarray(pose, dtype=np.float64).tolist(),
         "intrinsics": {
             "fx": camera.fx,
@@ -129,6 +135,7 @@ def _region(region: Region, color: str, floor_z: float, frame: OutputFrame) -> d
         "holes": [_ring(ring, floor_z, frame) for ring in region.holes],
         "object_ids": list(region.object_ids),
         "frames": len(region.frame_ids),
+        "seen_by": list(region.seen_by),
         "color": color,
     }
 
@@ -144,6 +151,17 @@ def _edge(edge: RegionEdge, frame: OutputFrame) -> dict[str, Any]:
     return {
         "a": edge.a,
         "b": edge.b,
+        "kind": edge.kind.value,
         "width": number(edge.width),
         "position": numbers(frame.points(edge.position)[0]),
+        "upper": None if edge.upper is None else numbers(frame.points(edge.upper)[0]),
+    }
+
+
+def _frontier(frontier: Frontier, frame: OutputFrame) -> dict[str, Any]:
+    return {
+        "floor": frontier.floor,
+        "region_id": frontier.region_id or None,
+        "position": numbers(frame.points(frontier.position)[0]),
+        "width": number(frontier.width),
     }

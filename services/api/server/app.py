@@ -16,6 +16,7 @@ from services.api.server import (
     export_routes,
     frame_routes,
     map_routes,
+    navigation_routes,
     query_routes,
     system_routes,
 )
@@ -49,7 +50,15 @@ def create_app(service: SceneService, settings: Settings, stopping: asyncio.Even
 
 def _v1(settings: Settings) -> APIRouter:
     v1 = APIRouter(prefix="/v1", dependencies=[Depends(key_check(settings.api_key))], responses=PROBLEMS)
-    for routes in (map_routes, frame_routes, query_routes, event_routes, export_routes, system_routes):
+    for routes in (
+        map_routes,
+        navigation_routes,
+        frame_routes,
+        query_routes,
+        event_routes,
+        export_routes,
+        system_routes,
+    ):
         v1.include_router(routes.router)
     return v1
 

@@ -23,6 +23,12 @@ def not_modified(request: Request, etag: str) -> Response | None:
     return Response(status_code=304, headers={"ETag": etag} | _HEADERS)
 
 
+def tagged_file(content: bytes, media_type: str, etag: str, name: str = "") -> Response:
+    """Bytes with their tag; a file to be saved where it has a name."""
+    saved = {"Content-Disposition": f'attachment; filename="{name}"'} if name else {}
+    return Response(content, media_type=media_type, headers={"ETag": etag} | _HEADERS | saved)
+
+
 def tagged(body: Any, etag: str) -> JSONResponse:
     """`body` with its tag."""
     return JSONResponse(body, headers={"ETag": etag} | _HEADERS)

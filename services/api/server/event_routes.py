@@ -32,7 +32,8 @@ async def follow(
     ] = None,
     after: Annotated[int | None, Query(ge=0, description="the same, for the first connection")] = None,
 ) -> StreamingResponse:
-    """`map` (a delta, its id the map version) and `regions` (a revision), from a version on or from now on.
+    """`map` (a delta, its id the map version) and `regions` (a revision and what changed with it), from a version on
+    or from now on.
 
     A client that reconnects with the last id it saw misses no delta. `regions` comes once at the start.
     """

@@ -1,24 +1,30 @@
-"""The map as files and pictures: point clouds, PLY, the scene graph, floor plans."""
+"""The map as files and pictures: point clouds, PLY, the scene graph, regions, robots' maps, floor plans."""
 
 from __future__ import annotations
 
 import asyncio
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 
 from ovip.scene.grid import FREE, OCCUPIED, UNKNOWN
 from ovip.scene.types import SceneMap
-from services.api.domain.floorplan import GREY_OF, PlanParams, occupancy_png, regions_png
+from services.api.domain.floorplan import PlanParams
+from services.api.domain.grid_pictures import GREY_OF, occupancy_png, regions_png
+from services.api.domain.nav2 import nav2_zip
 from services.api.domain.ply import PlyFormat, write_ply
+from services.api.domain.region_polygons import regions_geojson
 from services.api.domain.scene_json import scene_graph_to_json
 from services.api.server import models
-from services.api.server.parameters import FloorNumber, InFrame, KnownScene, Responses, Service
+from services.api.server.etags import etag_of, not_modified, tagged, tagged_file
+from services.api.server.parameters import FloorNumber, InFrame, KnownScene, OneFloor, Responses, Service
 from services.api.service import FrameName
 
 router = APIRouter(tags=["exports"])
 _MAX_POINTS = 1_000_000  # what one gRPC message of 16 MB holds
+UNCHANGED: Responses = {304: {"description": "unchanged"}}
+_ZIP: Responses = {200: {"content": {"application/zip": {}}, "description": "the archive"}}
 _PNG: Responses = {200: {"content": {"image/png": {}}, "description": "the picture"}}
 _BYTES: Responses = {200: {"content": {"application/octet-stream": {}}, "description": "the file"}}
 _MEANINGS = {"unknown": UNKNOWN, "free": FREE, "occupied": OCCUPIED}
@@ -80,23 +86,52 @@ async def export_scene_graph(
     return scene_graph_to_json(scene_map, partition, shown)
 
 
-@router.get("/scenes/{scene}/floorplan.png", response_class=Response, responses=_PNG)
+@router.get("/scenes/{scene}/exports/regions.json", response_model=models.RegionPolygons, responses=UNCHANGED)
+async def export_regions(known: KnownScene, service: Service, request: Request) -> Any:
+    """The regions' polygons, holes and all, laid out as GeoJSON; its coordinates are metres in the z-up world."""
+    cut = await service.cut_floors(known.scene)
+    etag = etag_of(cut.partition.map_version, cut.partition.revision)
+    return not_modified(request, etag) or tagged(regions_geojson(known.scene, cut.partition), etag)
+
+
+@router.get("/scenes/{scene}/exports/nav2", response_class=Response, responses=_ZIP | UNCHANGED)
+async def export_nav2(
+    known: KnownScene, service: Service, request: Request, floor: OneFloor = None
+) -> Response:
+    """Maps for ROS 2 nav2's map server in a zip: floor-N.pgm and floor-N.yaml for each floor."""
+    cut = await service.cut_floors(known.scene, floor)
+    etag = etag_of(cut.partition.map_version, cut.partition.revision)
+    return not_modified(request, etag) or tagged_file(
+        nav2_zip(cut.grids), "application/zip", etag, f"{known.scene}-r{cut.partition.revision}-nav2.zip"
+    )
+
+
+@router.get("/scenes/{scene}/floorplan.png", response_class=Response, responses=_PNG | UNCHANGED)
 async def draw_plan(
     known: KnownScene,
     service: Service,
-    floor: Annotated[int, Query(ge=0)] = 0,
-    scale: Annotated[float, Query(ge=5, le=400, description="pixels a metre")] = 80.0,
+    request: Request,
+    floor: OneFloor = None,
+    scale: Annotated[
+        float | None,
+        Query(ge=5, le=400, description="pixels a metre; none: 80, or what keeps a floor below 2800 pixels"),
+    ] = None,
 ) -> Response:
-    """A floor as a picture, larger y up: free space, walls, regions with their names, objects."""
-    return _picture(await service.floorplan(known.scene, floor, PlanParams(pixels_per_metre=scale)))
+    """A floor, or all side by side, as a picture, larger y up: regions with names and areas, walls, doorways with their
+    widths, stairs, what is unexplored, objects."""
+    etag = etag_of(known.map_version, (await service.partition(known.scene)).revision)
+    return not_modified(request, etag) or tagged_file(
+        await service.floorplan(known.scene, floor, PlanParams(pixels_per_metre=scale)), "image/png", etag
+    )
 
 
-@router.get("/scenes/{scene}/grid/{floor}", response_model=models.Grid)
-async def get_grid(known: KnownScene, floor: FloorNumber, service: Service) -> Any:
+@router.get("/scenes/{scene}/grid/{floor}", response_model=models.Grid, responses=UNCHANGED)
+async def get_grid(known: KnownScene, floor: FloorNumber, service: Service, request: Request) -> Any:
     """What the cells of a floor are, and where its images lie."""
     grid = await service.floor_grid(known.scene, floor)
     here = f"/v1/scenes/{known.scene}/grid/{floor}"
-    return {
+    etag = etag_of(grid.revision)
+    body = {
         "floor": grid.floor,
         "origin": list(grid.origin),
         "resolution": grid.resolution,
@@ -108,22 +143,27 @@ async def get_grid(known: KnownScene, floor: FloorNumber, service: Service) -> A
         "occupancy_values": {name: GREY_OF[cell] for name, cell in _MEANINGS.items()},
         "regions_png": f"{here}/regions.png",
     }
+    return not_modified(request, etag) or tagged(body, etag)
 
 
-@router.get("/scenes/{scene}/grid/{floor}/occupancy.png", response_class=Response, responses=_PNG)
-async def get_occupancy(known: KnownScene, floor: FloorNumber, service: Service) -> Response:
+@router.get("/scenes/{scene}/grid/{floor}/occupancy.png", response_class=Response, responses=_PNG | UNCHANGED)
+async def get_occupancy(
+    known: KnownScene, floor: FloorNumber, service: Service, request: Request
+) -> Response:
     """Unknown, free and occupied cells as grey values; the first image row is row 0, the smallest y."""
-    return _picture(occupancy_png(await service.floor_grid(known.scene, floor)))
+    grid = await service.floor_grid(known.scene, floor)
+    etag = etag_of(grid.revision)
+    return not_modified(request, etag) or tagged_file(occupancy_png(grid), "image/png", etag)
 
 
-@router.get("/scenes/{scene}/grid/{floor}/regions.png", response_class=Response, responses=_PNG)
-async def get_region_labels(known: KnownScene, floor: FloorNumber, service: Service) -> Response:
+@router.get("/scenes/{scene}/grid/{floor}/regions.png", response_class=Response, responses=_PNG | UNCHANGED)
+async def get_region_labels(
+    known: KnownScene, floor: FloorNumber, service: Service, request: Request
+) -> Response:
     """Region labels of the cells as 16-bit grey; the first image row is row 0, the smallest y."""
-    return _picture(regions_png(await service.floor_grid(known.scene, floor)))
-
-
-def _picture(png: bytes) -> Response:
-    return Response(png, media_type="image/png", headers={"Cache-Control": "private, no-cache"})
+    grid = await service.floor_grid(known.scene, floor)
+    etag = etag_of(grid.revision)
+    return not_modified(request, etag) or tagged_file(regions_png(grid), "image/png", etag)
 
 
 def _download(scene_map: SceneMap, suffix: str) -> dict[str, str]:

@@ -27,13 +27,15 @@ async def list_frames(
 ) -> Any:
     """Frames in order of arrival, page by page."""
     after = decode_cursor("frames", cursor)
-    shown, page = await asyncio.gather(
-        service.output_frame(known.scene, frame), service.frames(known.scene, after, limit)
+    shown, page, region_of = await asyncio.gather(
+        service.output_frame(known.scene, frame),
+        service.frames(known.scene, after, limit),
+        service.regions_of_frames(known.scene),
     )
     end = encode_cursor("frames", page.end) if page.end else None
     return {
         "frame": shown.name,
-        "frames": [frame_to_json(record, shown) for record in page.items],
+        "frames": [frame_to_json(record, shown, region_of.get(record.frame_id)) for record in page.items],
         "next_cursor": end if page.more else None,
         "end_cursor": end,
     }

@@ -162,14 +162,40 @@ class Region(_Body):
     holes: list[Ring]
     object_ids: list[str]
     frames: int = Field(description="how many frames were taken from it")
+    seen_by: list[str] = Field(description="ids of the frames that see most of its floor, best first")
     color: str = Field(description="a colour to draw it in, #rrggbb; all pictures of the api use the same")
 
 
 class RegionEdge(_Body):
+    """How two regions are joined; stairs by `position`, their foot, in a, and `upper`, their head, in b."""
+
     a: str
     b: str
+    kind: Literal["opening", "doorway", "stairs"] = Field(
+        description="a border without a wall, a passage as narrow as a door, or stairs"
+    )
     width: float | None
     position: Point
+    upper: Point | None = Field(description="stairs only: their head")
+
+
+class Frontier(_Body):
+    """Where the floor that was seen ends at what never was."""
+
+    floor: int
+    region_id: str | None
+    position: Point
+    width: float | None = Field(description="metres along it")
+
+
+class RegionEvent(_Body):
+    kind: Literal["appeared", "vanished", "retyped", "reshaped"]
+    region_id: str
+    floor: int
+    display_name: str = Field(description="now; of a vanished region, its last")
+    other: str = Field(
+        description="appeared: the region that most of its floor was; vanished: what most of it is now"
+    )
 
 
 class RegionList(_Body):
@@ -179,6 +205,8 @@ class RegionList(_Body):
     floors: list[Floor]
     regions: list[Region]
     edges: list[RegionEdge]
+    frontiers: list[Frontier]
+    events: list[RegionEvent] = Field(description="what changed since the revision before")
     fallbacks: list[str]
 
 
@@ -199,6 +227,7 @@ class GraphRegion(_Body):
     outlines: list[Ring]
     holes: list[Ring]
     frames: int
+    seen_by: list[str]
     color: str
     objects: list[GraphObject]
 
@@ -213,6 +242,8 @@ class Graph(_Body):
     frame: FrameOfReference
     floors: list[GraphFloor]
     edges: list[RegionEdge]
+    frontiers: list[Frontier]
+    events: list[RegionEvent] = Field(description="what changed since the revision before")
     unplaced: list[GraphObject] = Field(description="objects that no region holds")
     fallbacks: list[str]
 
@@ -234,8 +265,53 @@ class SceneGraph(_Body):
     floors: list[Floor]
     regions: list[Region]
     edges: list[RegionEdge]
+    frontiers: list[Frontier]
+    events: list[RegionEvent] = Field(description="what changed since the revision before")
     fallbacks: list[str]
     objects: list[ExportedObject]
+
+
+class MultiPolygon(_Body):
+    type: Literal["MultiPolygon"]
+    coordinates: list[list[list[list[float]]]] = Field(
+        description="polygons of closed rings of x, y in metres: the outline counter-clockwise, then holes clockwise"
+    )
+
+
+class PolygonProperties(_Body):
+    id: str
+    floor: int
+    z: float | None = Field(description="height of the floor, metres")
+    function: str
+    display_name: str
+    area: float | None = Field(description="square metres")
+    object_ids: list[str]
+    color: str
+
+
+class PolygonFeature(_Body):
+    type: Literal["Feature"]
+    id: str
+    geometry: MultiPolygon
+    properties: PolygonProperties
+
+
+class FloorHeight(_Body):
+    floor: int
+    z: float | None
+
+
+class RegionPolygons(_Body):
+    """Laid out as GeoJSON, but in metres of the scene's world."""
+
+    type: Literal["FeatureCollection"]
+    scene: str
+    map_version: int
+    regions_revision: int
+    frame: Literal["world"]
+    unit: Literal["metre"]
+    floors: list[FloorHeight]
+    features: list[PolygonFeature]
 
 
 class Camera(_Body):
@@ -251,6 +327,7 @@ class FrameItem(_Body):
     frame_id: str
     timestamp_ns: int
     position: Point = Field(description="of the camera")
+    region_id: str | None = Field(description="taken in this region; null before it is placed")
     pose: Matrix4 = Field(description="4x4 that takes camera coordinates to `frame`")
     intrinsics: Camera
     tags: list[str]
@@ -361,7 +438,9 @@ class Answer(_Body):
     map_version: int
     regions_revision: int
     coverage: Coverage | None
-    needs: str = Field(description="what would be needed to decide an unresolved query")
+    needs: str = Field(
+        description="what would decide an unresolved query; of an absent one, what in reach nobody has seen"
+    )
     search_id: str
     frame: FrameOfReference
 
@@ -371,3 +450,43 @@ class Search(_Body):
     text: str
     done: bool
     answer: Answer | None
+
+
+class Passage(_Body):
+    kind: Literal["opening", "doorway", "stairs"]
+    a: str = Field(description="region; of stairs, the lower one")
+    b: str = Field(description="region; of stairs, the upper one")
+    width: float | None = Field(description="metres")
+    position: Point = Field(description="the middle of the opening; of stairs, their foot")
+    upper: Point | None = Field(description="the head of stairs; null for what is none")
+
+
+class Route(_Body):
+    frame: FrameOfReference
+    path: list[Point] = Field(description="corners of the way on the floor; none where there is no way")
+    length: float | None = Field(description="metres walked")
+    region_ids: list[str] = Field(description="in the order they are walked through")
+    passages: list[Passage] = Field(description="in the order they are passed")
+    why: str = Field(description="why there is no way; empty where there is one")
+    regions_revision: int
+
+
+class RouteNode(_Body):
+    node: int
+    floor: int
+    position: Point = Field(description="where the robot can stand in the passage")
+    passage: Passage
+
+
+class RouteLink(_Body):
+    a: int = Field(description="number of a node")
+    b: int
+    region_id: str | None = Field(description="the region that is walked through; null for stairs")
+    length: float | None = Field(description="metres walked")
+
+
+class RouteGraph(_Body):
+    frame: FrameOfReference
+    nodes: list[RouteNode] = Field(description="stairs have one on each of their two floors")
+    links: list[RouteLink]
+    regions_revision: int

@@ -23,6 +23,7 @@ FrameId = Annotated[str, Path(description="robot.session.sequence", pattern="^[A
 InFrame = Annotated[FrameName, Query(alias="frame", description="frame of reference of all positions")]
 Cursor = Annotated[str | None, Query(description="next_cursor of the page before")]
 Limit = Annotated[int, Query(ge=1, le=1000, description="most items in the page")]
+OneFloor = Annotated[int | None, Query(ge=0, alias="floor", description="only this floor; none: all")]
 FloorNumber = Annotated[int, Path(ge=0, description="number of the floor, 0 the lowest")]
 
 PROBLEMS: Responses = {

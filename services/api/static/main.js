@@ -11,15 +11,16 @@ const PAGE = 1000;
 const MOST_FRAMES = 4000;
 const MOST_POINTS = 150_000;
 const SUGGESTED = 8;
+const MOST_CHANGES = 3;
 const WIDE = 1.6;
 const SCENES_EVERY_MS = 5000;
 
 const state = {
-  scene: null, wanted: null, version: 0, objects: new Map(), regions: [], floors: [], floor: 0, regionOf: new Map(), frames: [], framesEnd: null,
+  scene: null, wanted: null, version: 0, objects: new Map(), regions: [], floors: [], edges: [], frontiers: [], regionNames: new Map(), floor: 0, regionOf: new Map(), frames: [], framesEnd: null,
   regionsRevision: -1, stop: () => {}, asking: null,
 };
 
-const plan = new Plan(byId("plan"), { pick: (id) => select(id), describe: (obj) => describe(obj) });
+const plan = new Plan(byId("plan"), { pick: (id) => select(id), describe: (obj) => describe(obj), describeRegion: (region) => describeRegion(region) });
 const space = new Space(byId("space"), { pick: (id) => select(id) });
 const answers = new AnswerPanel(byId("panel-answer"), {
   image: (frameId) => getImage(`v1/scenes/${state.scene}/frames/${frameId}/rgb`),
@@ -74,11 +75,12 @@ async function open(scene) {
   state.stop();
   state.asking?.abort();
   byId("scene").value = scene;
-  Object.assign(state, { scene, version: 0, objects: new Map(), regions: [], floors: [], floor: 0, frames: [], framesEnd: null, regionsRevision: -1 });
+  Object.assign(state, { scene, version: 0, objects: new Map(), regions: [], floors: [], edges: [], frontiers: [], regionNames: new Map(), floor: 0, frames: [], framesEnd: null, regionsRevision: -1 });
   plan.moved = space.moved = false;
   for (const view of [plan, space]) view.setAnswer(null);
   select(null);
   answers.idle();
+  tellChanges([]);
   showExports();
   await Promise.all([loadObjects(), loadRegions(), loadFrames()]);
   await loadPoints();
@@ -92,8 +94,10 @@ async function open(scene) {
       refreshPoints();
       refreshFrames();
     },
-    regions: ({ revision }) => {
-      if (revision !== state.regionsRevision) refreshRegions();
+    regions: ({ revision, events }) => {
+      if (revision === state.regionsRevision) return;
+      tellChanges(events);
+      refreshRegions();
     },
   });
 }
@@ -123,12 +127,15 @@ async function loadRegions() {
   if (scene !== state.scene) return;
   state.regions = body.regions;
   state.floors = body.floors;
+  state.edges = body.edges;
+  state.frontiers = body.frontiers;
+  for (const region of body.regions) state.regionNames.set(region.region_id, region.display_name);
   state.regionsRevision = body.regions_revision;
   state.regionOf = new Map(body.regions.flatMap((region) => region.object_ids.map((id) => [id, region])));
   if (!body.floors.some((floor) => floor.floor === state.floor)) state.floor = body.floors[0]?.floor ?? 0;
   const picker = byId("floor");
   picker.hidden = body.floors.length < 2;
-  picker.replaceChildren(...body.floors.map((floor) => el("option", { value: floor.floor, text: `Floor ${floor.floor}` })));
+  picker.replaceChildren(...body.floors.map((floor) => el("option", { value: floor.floor, text: `Floor ${floor.floor}, at ${(floor.z ?? 0).toFixed(1)} m` })));
   picker.value = state.floor;
   showRegions();
   showObjects();
@@ -205,6 +212,7 @@ function finish(answer) {
 function select(id, candidate = null) {
   const obj = (id && state.objects.get(id)) || candidate;
   if (obj?.id) showFloorOf(obj.id);
+  if (!obj && id) show("regions");
   plan.select(id);
   space.select(obj);
   for (const row of document.querySelectorAll(".row[data-id]")) {
@@ -228,6 +236,7 @@ function changeFloor(floor) {
   plan.moved = false;
   showRegions();
   showObjects();
+  showExports();
   attempt(loadGrid);
 }
 
@@ -264,28 +273,71 @@ function objectRow(obj) {
 
 function showRegions() {
   plan.setRegions(state.regions.filter((region) => region.floor === state.floor));
+  plan.setMarks(state.floor, state.edges, state.frontiers, state.regions);
   space.setRegions(state.regions, state.floors);
   byId("region-count").textContent = state.regions.length;
-  byId("region-rows").replaceChildren(...state.regions.map((region) => {
-    const swatch = el("span", { class: "swatch" });
-    swatch.style.background = region.color;
-    return el("li", {}, el("button", { class: "row", type: "button", "data-testid": "region-item", "data-id": region.region_id,
-      onclick: () => {
-        if (region.floor !== state.floor) changeFloor(region.floor);
-        select(region.region_id);
-      } },
-      swatch,
-      el("span", {}, el("span", { class: "name", text: region.display_name }), " ", el("span", { class: "where", text: plural(region.object_ids.length, "object") })),
-      el("span", { class: "side-note", text: squareMetres(region.area) })));
-  }));
+  byId("region-rows").replaceChildren(...state.regions.map(regionRow));
   if (!state.regions.length) byId("region-rows").append(el("li", { class: "quiet", text: "No regions yet: they are cut once enough floor was seen." }));
+}
+
+function regionRow(region) {
+  const swatch = el("span", { class: "swatch" });
+  swatch.style.background = region.color;
+  const ways = neighbours(region);
+  return el("li", {}, el("button", {
+    class: "row", type: "button", "data-testid": "region-item", "data-id": region.region_id,
+    onmouseenter: () => plan.point(region.region_id), onmouseleave: () => plan.point(null),
+    onclick: () => {
+      if (region.floor !== state.floor) changeFloor(region.floor);
+      select(region.region_id);
+    },
+  },
+  swatch,
+  el("span", {},
+    el("span", { class: "name", text: region.display_name }), " ",
+    el("span", { class: "where", text: [!region.display_name.startsWith(region.function) && region.function, plural(region.object_ids.length, "object"), state.floors.length > 1 && `floor ${region.floor}`].filter(Boolean).join(" · ") }),
+    ways && el("span", { class: "where ways", "data-testid": "region-ways", text: ways })),
+  el("span", { class: "side-note", text: squareMetres(region.area) })));
+}
+
+/** "doorway 0.9 m to kitchen, open to dining area". */
+function neighbours(region) {
+  const said = { doorway: (edge) => `doorway ${metres(edge.width)} to`, opening: () => "open to", stairs: () => "stairs to" };
+  return state.edges.filter((edge) => edge.a === region.region_id || edge.b === region.region_id)
+    .map((edge) => `${said[edge.kind](edge)} ${nameOf(edge.a === region.region_id ? edge.b : edge.a)}`).join(", ");
+}
+
+function describeRegion(region) {
+  return [squareMetres(region.area), plural(region.object_ids.length, "object"), neighbours(region)].filter(Boolean).join(" · ");
+}
+
+function nameOf(id) {
+  return state.regionNames.get(id) ?? id;
+}
+
+/** What a new partition changed, in words above the plan. */
+function tellChanges(events) {
+  for (const event of events) if (event.kind !== "vanished") state.regionNames.set(event.region_id, event.display_name);
+  const said = {
+    appeared: ({ display_name: name, other }) => `${name} appeared${other ? ` (was ${nameOf(other)})` : ""}`,
+    vanished: ({ display_name: name, other }) => `${name} is gone${other ? ` (now ${nameOf(other)})` : ""}`,
+    retyped: ({ display_name: name, region_id: id }) => `${id} is now called ${name}`,
+    reshaped: ({ display_name: name }) => `${name} has another shape`,
+  };
+  const words = events.map((event) => said[event.kind](event));
+  byId("changes").textContent = words.slice(0, MOST_CHANGES).join("; ") + (words.length > MOST_CHANGES ? `; ${words.length - MOST_CHANGES} more` : "");
+  byId("changes").title = words.join("; ");
+  byId("changes").hidden = !words.length;
 }
 
 function showCells() {
   if (!state.cells) return;
   const style = getComputedStyle(document.documentElement);
   const wall = rgba(style.getPropertyValue("--wall"), 255);
-  plan.setCells(state.cells.grid, paintCells(state.cells.image, state.cells.grid.occupancy_values, wall, [0, 0, 0, 0]));
+  const thing = rgba(style.getPropertyValue("--ink"), 26);
+  const { grid, image } = state.cells;
+  const here = state.regions.filter((region) => region.floor === grid.floor);
+  plan.setCells(grid, paintCells(image, grid, here, { wall, thing }));
 }
 
 function showFacts() {
@@ -301,7 +353,10 @@ function showExports() {
     ["Point cloud", "PLY, binary", `${base}/exports/ply`, {}],
     ["Point cloud", "PLY, text", `${base}/exports/ply`, { format: "ascii" }],
     ["Scene graph", "JSON: floors, regions, objects", `${base}/exports/scene-graph.json`, {}],
-    ["Floor plan", "PNG", `${base}/floorplan.png`, { floor: state.floor }],
+    ["Regions", "JSON: polygons in metres", `${base}/exports/regions.json`, {}],
+    ["Maps for nav2", "zip: PGM and YAML of each floor", `${base}/exports/nav2`, {}],
+    ["Floor plan", "PNG, all floors", `${base}/floorplan.png`, {}],
+    ["This floor's plan", "PNG", `${base}/floorplan.png`, { floor: state.floor }],
   ];
   byId("exports").replaceChildren(...items.map(([name, what, path, params]) => el("li", {}, el("a", { href: link(path, params), download: "" }, name, el("small", { text: what })))));
 }

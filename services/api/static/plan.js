@@ -3,6 +3,7 @@
 
 import { el, svg } from "./dom.js";
 import { metres, squareMetres } from "./format.js";
+import { floorMarks } from "./marks.js";
 
 const MARGIN = 0.06;
 const NICE = [0.25, 0.5, 1, 2, 5, 10, 20, 50];
@@ -15,6 +16,7 @@ export class Plan {
     this.on = on;
     this.objects = [];
     this.regions = [];
+    this.marks = [];
     this.trail = [];
     this.answer = null;
     this.viewpoints = [];
@@ -23,8 +25,8 @@ export class Plan {
     this.view = { x: 0, y: 0, scale: 50 };
     this.world = svg("g");
     this.cells = svg("g");
-    this.layers = Object.fromEntries(["regions", "trail", "objects", "path"].map((name) => [name, svg("g", { class: name })]));
-    this.world.append(this.layers.regions, this.cells, this.layers.trail, this.layers.objects, this.layers.path);
+    this.layers = Object.fromEntries(["regions", "marks", "trail", "objects", "path"].map((name) => [name, svg("g", { class: name })]));
+    this.world.append(this.layers.regions, this.cells, this.layers.marks, this.layers.trail, this.layers.objects, this.layers.path);
     this.overlay = svg("g");
     this.svg = svg("svg", { class: "plan", tabindex: "0", role: "application", "data-testid": "plan-svg",
       "aria-label": "Floor plan. Arrow keys move it, plus and minus change the scale, 0 shows all." }, this.world, this.overlay);
@@ -52,6 +54,18 @@ export class Plan {
       fill: region.color, stroke: region.color, "data-testid": "plan-region", "data-id": region.region_id,
     })));
     this.draw();
+  }
+
+  /** Doorways, stairs and frontiers of the floor shown; `regions` are those of all floors. */
+  setMarks(floor, edges, frontiers, regions) {
+    this.marks = floorMarks(floor, edges, frontiers, new Map(regions.map((region) => [region.region_id, region])));
+    this.layers.marks.replaceChildren(...this.marks.map((mark) => mark.node));
+    this.draw();
+  }
+
+  /** Brings out a region that is pointed at elsewhere; null: none. */
+  point(id) {
+    for (const node of this.layers.regions.children) node.toggleAttribute("data-pointed", node.dataset.id === id);
   }
 
   setObjects(objects, fresh = new Set()) {
@@ -200,8 +214,9 @@ export class Plan {
   names() {
     const taken = [];
     const written = [];
-    const write = (text, point, klass, shift = 0) => {
-      const [x, y] = this.screen(point);
+    const write = (text, point, klass, shift = 0, aside = 0) => {
+      const [px, y] = this.screen(point);
+      const x = Math.min(Math.max(px + aside, 3.4 * text.length + 4), this.size.width - 3.4 * text.length - 4);
       if (x < 0 || y < 0 || x > this.size.width || y > this.size.height) return;
       const half = 3.4 * text.length + 4;
       const place = [x - half, y + shift - 8, x + half, y + shift + 8];
@@ -213,12 +228,15 @@ export class Plan {
     const first = this.objects.filter((obj) => obj.id === this.current || obj.id === found?.id);
     for (const obj of first) write(obj.label, obj.position, "of-object of-current", 22);
     if (found && !found.id) write(found.label, found.position, "of-object of-current", 22);
+    const writeMark = (mark) => write(mark.text, mark.at, mark.klass, mark.away ? -12 : 0, mark.away ? 0 : 22);
+    for (const mark of this.marks.filter((other) => other.box)) writeMark(mark);
     for (const region of this.regions) {
       const at = this.roomFor(region, taken);
       if (!at) continue;
       write(region.display_name, at, "of-region", -8);
       write(squareMetres(region.area), at, "of-area", 8);
     }
+    for (const mark of this.marks.filter((other) => !other.box)) writeMark(mark);
     const rest = this.objects.filter((obj) => !first.includes(obj)).sort((a, b) => area(b.box) - area(a.box));
     for (const obj of rest.slice(0, MOST_LABELS)) {
       const fits = (obj.box[3] - obj.box[0]) * this.view.scale > 7 * obj.label.length;
@@ -231,7 +249,8 @@ export class Plan {
   roomFor(region, taken) {
     const half = 4.2 * region.display_name.length + 4;
     const [cx, cy] = this.screen(region.centroid);
-    const boxes = this.objects.map(({ box }) => [...this.screen([box[0], box[4]]), ...this.screen([box[3], box[1]])]);
+    const boxes = [...this.objects, ...this.marks].filter(({ box }) => box)
+      .map(({ box }) => [...this.screen([box[0], box[4]]), ...this.screen([box[3], box[1]])]);
     let best = { cost: Infinity, at: null };
     for (const dx of [0, -50, 50, -100, 100, -160, 160]) {
       for (const dy of [0, 36, -36, 72, -72, 110, -110, 150, -150]) {
@@ -282,7 +301,7 @@ export class Plan {
     }, { passive: false });
     let grip = null;
     this.svg.addEventListener("pointerdown", (event) => {
-      grip = { x: event.clientX, y: event.clientY, far: false, node: objectAt(event.target) };
+      grip = { x: event.clientX, y: event.clientY, far: false, node: thingAt(event.target) };
       this.svg.setPointerCapture(event.pointerId);
     });
     this.svg.addEventListener("pointermove", (event) => {
@@ -302,7 +321,10 @@ export class Plan {
       grip = null;
     });
     this.svg.addEventListener("pointercancel", () => (grip = null));
-    this.svg.addEventListener("pointerleave", () => (this.tip.hidden = true));
+    this.svg.addEventListener("pointerleave", () => {
+      this.tip.hidden = true;
+      this.point(null);
+    });
     this.svg.addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -317,12 +339,15 @@ export class Plan {
   }
 
   hover(event) {
-    const id = objectAt(event.target)?.dataset.id;
+    const id = thingAt(event.target)?.dataset.id;
     const obj = id && this.objects.find((candidate) => candidate.id === id);
-    this.tip.hidden = !obj;
-    if (!obj) return;
+    const region = id && this.regions.find((candidate) => candidate.region_id === id);
+    this.point(region?.region_id ?? null);
+    this.tip.hidden = !obj && !region;
+    if (this.tip.hidden) return;
     const [x, y] = this.local(event);
-    this.tip.replaceChildren(el("b", { text: obj.label }), this.on.describe(obj));
+    this.tip.replaceChildren(
+      el("b", { text: obj ? obj.label : region.display_name }), obj ? this.on.describe(obj) : this.on.describeRegion(region));
     const half = this.tip.offsetWidth / 2 + 4;
     this.tip.style.left = `${Math.min(Math.max(x, half), this.size.width - half)}px`;
     this.tip.style.top = `${Math.max(y, this.tip.offsetHeight + 16)}px`;
@@ -334,19 +359,31 @@ export class Plan {
   }
 }
 
-/** Cells as a picture of one pixel each, in the page's colours. image: grey values as the API gives them. */
-export function paintCells(image, values, wall, floor) {
+/**
+ * Cells as a picture of one pixel each: what is occupied is wall, but on a region's floor a thing that stands there.
+ * image: grey values as the API gives them; grid: what they mean.
+ */
+export function paintCells(image, grid, regions, { wall, thing }) {
+  const floor = floorMask(image, grid, regions);
   const canvas = el("canvas", { width: image.width, height: image.height });
   const context = canvas.getContext("2d", { willReadFrequently: true });
   context.drawImage(image, 0, 0);
   const pixels = context.getImageData(0, 0, image.width, image.height);
   for (let i = 0; i < pixels.data.length; i += 4) {
-    const value = pixels.data[i];
-    const color = value === values.occupied ? wall : value === values.free ? floor : [0, 0, 0, 0];
-    pixels.data.set(color, i);
+    const occupied = pixels.data[i] === grid.occupancy_values.occupied;
+    pixels.data.set(occupied ? (floor[i + 3] > 127 ? thing : wall) : [0, 0, 0, 0], i);
   }
   context.putImageData(pixels, 0, 0);
   return canvas;
+}
+
+/** RGBA of a picture of the grid with the regions' floor filled. */
+function floorMask(image, { origin, resolution }, regions) {
+  const canvas = el("canvas", { width: image.width, height: image.height });
+  const context = canvas.getContext("2d", { willReadFrequently: true });
+  context.setTransform(1 / resolution, 0, 0, 1 / resolution, -origin[0] / resolution, -origin[1] / resolution);
+  for (const region of regions) context.fill(new Path2D([...region.outlines, ...region.holes].map(ringPath).join(" ")), "evenodd");
+  return context.getImageData(0, 0, image.width, image.height).data;
 }
 
 /** Area that two rectangles (x0, y0, x1, y1) share. */
@@ -364,7 +401,7 @@ function inside(ring, [x, y]) {
   return odd;
 }
 
-const objectAt = (node) => node.closest?.(".object");
+const thingAt = (node) => node.closest?.(".object, .region");
 const area = (box) => (box[3] - box[0]) * (box[4] - box[1]);
 const ringPath = (ring) => `M${ring.map((point) => `${point[0]} ${point[1]}`).join("L")}Z`;
 const linePath = (points) => `M${points.map((point) => `${point[0]} ${point[1]}`).join("L")}`;

@@ -13,6 +13,7 @@ from services.regions.domain.functions import borrow_priors, functions_of, table
 from services.regions.ports import Grouping, TextEncoder
 
 _WORDS_AT_ONCE = 128
+_MOST_NAMED = 10
 
 
 class TableGrouper:
@@ -40,7 +41,7 @@ class TableGrouper:
                 self._table_features = await self._embed(table_words())
             features = await self._embed(new)
         except OvipError as error:
-            return (f"grouping: words outside the table left open ({', '.join(new)}): {error}",)
+            return (f"grouping: words outside the table left open ({_named(new)}): {error}",)
         self._borrowed.update(borrow_priors(new, features, table_words(), self._table_features))
         self._asked.update(new)
         return ()
@@ -48,3 +49,8 @@ class TableGrouper:
     async def _embed(self, words: tuple[str, ...]) -> F32:
         parts = [words[k : k + _WORDS_AT_ONCE] for k in range(0, len(words), _WORDS_AT_ONCE)]
         return np.concatenate([await self._encoder.embed_text(part) for part in parts])
+
+
+def _named(words: tuple[str, ...]) -> str:
+    more = f" and {len(words) - _MOST_NAMED} more" if len(words) > _MOST_NAMED else ""
+    return ", ".join(words[:_MOST_NAMED]) + more

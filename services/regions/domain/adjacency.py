@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
+from ovip.scene.clusters import clusters
 from ovip.scene.types import F64, I32, I64, Bools
-from services.regions.domain.partition import cluster
+
+_APART = 10.0
+"""Cells: sets the crossings of each pair of regions apart, so that all are clustered at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,15 +31,17 @@ def find_openings(labels: I32, resolution: float, min_width: float = 0.30) -> tu
     edges crossed from row to row and n_c from column to column, sqrt(n_r^2 + n_c^2) cells.
     """
     pairs, middles, down = _crossings(labels)
+    if not len(pairs):
+        return ()
+    pair, number = np.unique(pairs, axis=0, return_inverse=True)
+    piece = clusters(np.column_stack([middles, number * _APART]), 1.5)
     openings = []
-    for a, b in sorted(set(map(tuple, pairs.tolist()))):
-        of_pair = np.flatnonzero((pairs == (a, b)).all(axis=1))
-        for piece in cluster(middles[of_pair], 1.5):
-            members = of_pair[piece]
-            width = resolution * float(np.hypot(down[members].sum(), (~down[members]).sum()))
-            if width >= min_width:
-                openings.append(Opening(a, b, width, _middle(middles[members])))
-    return tuple(openings)
+    for members in np.split(np.argsort(piece, kind="stable"), np.cumsum(np.bincount(piece))[:-1]):
+        width = resolution * float(np.hypot(down[members].sum(), (~down[members]).sum()))
+        if width >= min_width:
+            a, b = pair[number[members[0]]].tolist()
+            openings.append(Opening(a, b, width, _middle(middles[members])))
+    return tuple(sorted(openings, key=lambda opening: (opening.a, opening.b)))
 
 
 def _crossings(labels: I32) -> tuple[I64, F64, Bools]:
@@ -57,6 +61,5 @@ def _crossings(labels: I32) -> tuple[I64, F64, Bools]:
 
 def _middle(points: F64) -> F64:
     """The point nearest to the mean, so that it lies in the opening even where the border bends."""
-    _, nearest = cKDTree(points).query(points.mean(axis=0))
-    middle: F64 = points[nearest]
+    middle: F64 = points[np.argmin(((points - points.mean(axis=0)) ** 2).sum(axis=1))]
     return middle

@@ -1,29 +1,39 @@
-"""From evidence, objects and their functions to the partition of a whole scene (KGSW, Algorithm 1 line 23).
+"""From evidence, objects and their functions to the partition of a whole scene (KGSW, Algorithm 1 line 27).
 
 `survey` finds the storeys and their free space; between the two, somebody names the objects' functions;
-`assemble` cuts each storey into regions and back-projects objects and frames onto them.
+`assemble` cuts each storey into regions, back-projects objects and frames onto them, and joins the storeys.
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy import ndimage
 
 from ovip.scene.grid import FloorGrid
-from ovip.scene.types import F64, I64, Floor, Partition, Region, RegionEdge
+from ovip.scene.types import F64, I32, I64, Bools, EdgeKind, Floor, Frontier, Partition, Region, RegionEdge
 from services.regions.domain.adjacency import find_openings
-from services.regions.domain.floors import Storey
-from services.regions.domain.free_space import FreeSpace
+from services.regions.domain.cells import cells_of, labels_at
+from services.regions.domain.evidence import FloorEvidence
+from services.regions.domain.flooding import flood
+from services.regions.domain.frontiers import find_frontiers
 from services.regions.domain.identity import keep_ids
 from services.regions.domain.outlines import trace_outlines
-from services.regions.domain.partition import PartitionParams, StoreyPartition, partition_storey, regions_at
+from services.regions.domain.partition import UNKNOWN_FUNCTION, PartitionParams, partition_storey
+from services.regions.domain.stairs import Stairs, find_stairs
 from services.regions.domain.survey import SurveyedStorey, storeys_of_objects
+from services.regions.domain.views import seen_by
 
+HALLWAY = "hallway"
 _SAME_FLOOR = 0.5
 """Metres: a floor this close to one of the last partition is that floor."""
+_DOOR = 1.3
+"""Metres: a passage up to this wide is a doorway (a double door and its frame), a wider one an opening."""
+_HALLWAY_PASSAGES = 3
+"""A region of unknown function that joins at least so many others is a hallway."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,157 +69,240 @@ class Cut:
 
 
 def assemble(
-    surveyed: tuple[SurveyedStorey, ...],
+    surveyed: Sequence[SurveyedStorey],
     objects: PlacedObjects,
-    functions: tuple[str, ...],
-    cameras: dict[str, tuple[float, float, float]],
+    functions: Sequence[str],
+    evidence: FloorEvidence,
     before: Cut,
     params: PartitionParams | None = None,
+    kept: frozenset[int] = frozenset(),
 ) -> Cut:
-    """The scene cut into regions, each with its objects and the frames taken in it; the revision after
-    `before`'s.
+    """The scene cut into regions, each with its objects and the frames taken in it; the revision after `before`'s.
 
-    functions: one for each object. Every object and frame is on one floor and, where that floor has regions,
-    in one.
+    functions: one for each object. kept: floors of `before` whose regions stay as they are; objects and frames are
+    placed in them anew. Every object and frame is on one floor and, where that floor has regions, in one. The events
+    and the map's version are left to the caller.
     """
+    objects_on = storeys_of_objects(tuple(surveyed), objects.centres)
+    frames = _frames(evidence)
+    frames_on = storeys_of_objects(tuple(surveyed), frames.centres)
+    floors: list[_FloorCut] = []
     next_number = before.next_number
-    floors: list[Floor] = []
-    regions: list[Region] = []
-    edges: list[RegionEdge] = []
-    grids: list[FloorGrid] = []
-    frames = PlacedObjects(tuple(sorted(cameras)), (), _places([cameras[i] for i in sorted(cameras)]))
-    object_storey = storeys_of_objects(surveyed, objects.centres)
-    frame_storey = storeys_of_objects(surveyed, frames.centres)
     for number, here in enumerate(surveyed):
-        mine = np.flatnonzero(object_storey == number)
-        cut = partition_storey(
-            here.space.free,
-            _cells(here.space, objects.centres[mine]),
-            tuple(functions[i] for i in mine),
-            params,
-        )
-        named = keep_ids(
-            cut.labels, len(cut.groups), here.space.origin, _same_floor(before, here.storey), next_number
-        )
+        old = _same_floor(before, here)
+        if old is not None and old in kept:
+            floors.append(_kept(here, number, before, old))
+            continue
+        mine = np.flatnonzero(objects_on == number)
+        cells = _cells(here, objects.centres[mine])
+        cut = partition_storey(here.space.free, cells, [functions[i] for i in mine.tolist()], params)
+        last = before.grids[old] if old is not None else None
+        named = keep_ids(cut.labels, len(cut.functions), here.space.origin, last, next_number)
         next_number = named.next_number
-        grid = _grid(number, here.space, cut, named.ids, before.partition.revision + 1)
-        taken = np.flatnonzero(frame_storey == number)
-        floors.append(_floor(number, here))
-        regions += _regions(
-            here,
-            grid,
-            cut,
-            _inhabitants(cut.region_of_object, mine, objects.ids),
-            _inhabitants(
-                regions_at(cut.labels, _cells(here.space, frames.centres[taken])), taken, frames.ids
-            ),
+        floors.append(_FloorCut(number, here, cut.labels, named.ids, cut.functions))
+    stairs = find_stairs(evidence, tuple(surveyed))
+    edges = _stairs_edges(floors, stairs) + [edge for floor in floors for edge in _edges(floor)]
+    floors = [_with_hallways(floor, edges) for floor in floors]
+    regions = [
+        region
+        for floor in floors
+        for region in _regions(
+            floor,
+            _inside(floor, objects.only(np.flatnonzero(objects_on == floor.number))),
+            _inside(floor, frames.only(np.flatnonzero(frames_on == floor.number))),
+            evidence,
         )
-        edges += _edges(here, grid, cut)
-        grids.append(grid)
+    ]
     partition = Partition(
         map_version=0,
         revision=before.partition.revision + 1,
-        floors=tuple(floors),
+        floors=tuple(_summary(floor) for floor in floors),
         regions=_with_names(regions),
         edges=tuple(edges),
+        frontiers=tuple(frontier for floor in floors for frontier in _frontiers(floor, stairs)),
     )
-    return Cut(partition, tuple(grids), next_number)
+    return Cut(partition, tuple(_grid(floor, partition.revision) for floor in floors), next_number)
 
 
-def _places(points: list[tuple[float, float, float]]) -> F64:
-    return np.array(points, dtype=np.float64).reshape(-1, 3)
+@dataclass(frozen=True, slots=True)
+class _FloorCut:
+    """One storey cut up: R `(R, C)`, 0 = none, else 1 + index into the regions' ids and functions."""
+
+    number: int
+    here: SurveyedStorey
+    labels: I32
+    ids: tuple[str, ...]
+    functions: tuple[str, ...]
+
+    def at(self, cells: F64) -> list[str]:
+        """The region at, or nearest to, each of `(N, 2)` cells; "" where the storey has none."""
+        return [self.ids[k] if k >= 0 else "" for k in labels_at(self.labels, cells).tolist()]
+
+    def world(self, row: float, column: float) -> F64:
+        """The centre of a cell on the floor `(3,)`, metres."""
+        space = self.here.space
+        x = space.origin[0] + (column + 0.5) * space.resolution
+        y = space.origin[1] + (row + 0.5) * space.resolution
+        return np.array([x, y, self.here.storey.z])
 
 
-def _cells(space: FreeSpace, points: F64) -> F64:
-    """World points `(N, 3)` as (row, column) with cell centres at integers -> `(N, 2)`."""
-    cells: F64 = (points[:, 1::-1] - np.asarray(space.origin)[::-1]) / space.resolution - 0.5
-    return cells
+def _cells(here: SurveyedStorey, points: F64) -> F64:
+    return cells_of(points, here.space.origin, here.space.resolution)
 
 
-def _same_floor(before: Cut, storey: Storey) -> FloorGrid | None:
-    near = [
-        (abs(floor.z - storey.z), grid)
-        for floor, grid in zip(before.partition.floors, before.grids, strict=True)
-        if abs(floor.z - storey.z) <= _SAME_FLOOR
+def _frames(evidence: FloorEvidence) -> PlacedObjects:
+    """The frames as things with a place: where each camera was."""
+    ids = tuple(sorted(evidence.cameras))
+    places = np.array([evidence.cameras[i] for i in ids], dtype=np.float64).reshape(-1, 3)
+    return PlacedObjects(ids, ("",) * len(ids), places)
+
+
+def _same_floor(before: Cut, here: SurveyedStorey) -> int | None:
+    """Index of the last partition's floor nearest in height."""
+    apart = [abs(floor.z - here.storey.z) for floor in before.partition.floors]
+    return int(np.argmin(apart)) if apart and min(apart) <= _SAME_FLOOR else None
+
+
+def _kept(here: SurveyedStorey, number: int, before: Cut, old: int) -> _FloorCut:
+    """The regions of a floor of `before`, on today's grid: cells that are no longer free fall out, new ones join."""
+    grid, space = before.grids[old], here.space
+    functions = {region.region_id: region.function for region in before.partition.regions}
+    labels = np.zeros(space.free.shape, np.int32)
+    at = np.argwhere(grid.regions > 0)
+    shift = np.round((np.asarray(grid.origin) - np.asarray(space.origin)) / space.resolution).astype(int)[
+        ::-1
     ]
-    return min(near, key=lambda pair: pair[0])[1] if near else None
+    there = at + shift
+    inside = ((there >= 0) & (there < labels.shape)).all(axis=1)
+    labels[tuple(there[inside].T)] = grid.regions[tuple(at[inside].T)]
+    labels = flood(np.zeros(labels.shape), np.where(space.free, labels, 0), space.free)
+    named = tuple(functions.get(region_id, UNKNOWN_FUNCTION) for region_id in grid.region_ids)
+    return _FloorCut(number, here, labels, grid.region_ids, named)
 
 
-def _grid(
-    number: int, space: FreeSpace, cut: StoreyPartition, ids: tuple[str, ...], revision: int
-) -> FloorGrid:
-    return FloorGrid(
-        floor=number,
-        origin=space.origin,
-        resolution=space.resolution,
-        occupancy=space.occupancy,
-        regions=cut.labels.astype(np.uint16),
-        region_ids=ids,
-        revision=revision,
+def _edges(floor: _FloorCut) -> list[RegionEdge]:
+    return [
+        RegionEdge(
+            floor.ids[opening.a],
+            floor.ids[opening.b],
+            opening.width,
+            floor.world(*opening.middle.tolist()),
+            EdgeKind.DOORWAY if opening.width <= _DOOR else EdgeKind.OPENING,
+        )
+        for opening in find_openings(floor.labels, floor.here.space.resolution)
+    ]
+
+
+def _stairs_edges(floors: Sequence[_FloorCut], stairs: Sequence[Stairs]) -> list[RegionEdge]:
+    """Each stair as an edge from the region at its foot to the region at its head."""
+    edges = []
+    for way in stairs:
+        lower, upper = floors[way.lower], floors[way.upper]
+        (a,) = lower.at(_cells(lower.here, way.foot[None]))
+        (b,) = upper.at(_cells(upper.here, way.head[None]))
+        if a and b:
+            edges.append(RegionEdge(a, b, way.width, way.foot, EdgeKind.STAIRS, way.head))
+    return edges
+
+
+def _with_hallways(floor: _FloorCut, edges: Sequence[RegionEdge]) -> _FloorCut:
+    """Regions that nothing names but that lead to several others are hallways."""
+    beside: dict[str, set[str]] = {}
+    for edge in edges:
+        beside.setdefault(edge.a, set()).add(edge.b)
+        beside.setdefault(edge.b, set()).add(edge.a)
+    functions = tuple(
+        HALLWAY
+        if function == UNKNOWN_FUNCTION and len(beside.get(region_id, ())) >= _HALLWAY_PASSAGES
+        else function
+        for region_id, function in zip(floor.ids, floor.functions, strict=True)
     )
+    return replace(floor, functions=functions)
 
 
-def _floor(number: int, here: SurveyedStorey) -> Floor:
-    area = float(here.space.free.sum() * here.space.resolution**2)
-    return Floor(number, here.storey.z, here.storey.ceiling_z, area)
-
-
-def _inhabitants(region: I64, members: I64, ids: tuple[str, ...]) -> dict[int, tuple[str, ...]]:
-    """Region index -> ids of those of `members` that are in it, sorted."""
-    inside: dict[int, list[str]] = {}
-    for of, member in zip(region.tolist(), members.tolist(), strict=True):
-        inside.setdefault(of, []).append(ids[member])
-    return {of: tuple(sorted(found)) for of, found in inside.items()}
+def _inside(floor: _FloorCut, things: PlacedObjects) -> dict[str, tuple[str, ...]]:
+    """Region id -> ids of the things in it, sorted."""
+    held: dict[str, list[str]] = {}
+    for region_id, thing in zip(floor.at(_cells(floor.here, things.centres)), things.ids, strict=True):
+        held.setdefault(region_id, []).append(thing)
+    return {region_id: tuple(sorted(ids)) for region_id, ids in held.items()}
 
 
 def _regions(
-    here: SurveyedStorey,
-    grid: FloorGrid,
-    cut: StoreyPartition,
-    objects: dict[int, tuple[str, ...]],
-    frames: dict[int, tuple[str, ...]],
+    floor: _FloorCut,
+    objects: dict[str, tuple[str, ...]],
+    frames: dict[str, tuple[str, ...]],
+    evidence: FloorEvidence,
 ) -> list[Region]:
+    space, count = floor.here.space, len(floor.ids)
+    viewers = seen_by(evidence, floor.here.storey.z, floor.labels, count, space.origin, space.resolution)
+    windows = ndimage.find_objects(floor.labels, count)
     regions = []
-    for number, (region_id, group) in enumerate(zip(grid.region_ids, cut.groups, strict=True)):
-        cells = cut.labels == number + 1
-        outlines = trace_outlines(cells, grid.origin, grid.resolution)
+    for number, (region_id, window) in enumerate(zip(floor.ids, windows, strict=True)):
+        if window is None:
+            continue
+        rows, columns = window
+        cells = floor.labels[window] == number + 1
+        corner = (
+            space.origin[0] + columns.start * space.resolution,
+            space.origin[1] + rows.start * space.resolution,
+        )
+        outlines = trace_outlines(cells, corner, space.resolution)
         regions.append(
             Region(
                 region_id=region_id,
-                floor=grid.floor,
-                function=group.function,
-                display_name=group.function,
-                area=float(cells.sum() * grid.resolution**2),
-                centroid=_centre(grid, np.argwhere(cells).astype(np.float64), here.storey.z),
+                floor=floor.number,
+                function=floor.functions[number],
+                display_name=floor.functions[number],
+                area=float(cells.sum() * space.resolution**2),
+                centroid=floor.world(*_middle(cells, rows.start, columns.start)),
                 outlines=outlines.outer,
                 holes=outlines.holes,
-                object_ids=objects.get(number, ()),
-                frame_ids=frames.get(number, ()),
+                object_ids=objects.get(region_id, ()),
+                frame_ids=frames.get(region_id, ()),
+                seen_by=viewers[number],
             )
         )
     return regions
 
 
-def _centre(grid: FloorGrid, cells: F64, z: float) -> F64:
-    """The cell nearest to the mean of the region's cells, so that it lies in the region -> `(3,)`."""
-    _, nearest = cKDTree(cells).query(cells.mean(axis=0))
-    row, column = cells[nearest]
-    return np.array([*grid.xy_of(float(row), float(column)), z])
+def _middle(cells: Bools, row: int, column: int) -> tuple[float, float]:
+    """The cell nearest to the mean of the region's cells, so that it lies in the region; ties to the first."""
+    at = np.argwhere(cells)
+    nearest = at[np.argmin(((at - at.mean(axis=0)) ** 2).sum(axis=1))]
+    return float(nearest[0] + row), float(nearest[1] + column)
 
 
-def _edges(here: SurveyedStorey, grid: FloorGrid, cut: StoreyPartition) -> list[RegionEdge]:
+def _frontiers(floor: _FloorCut, stairs: Sequence[Stairs]) -> list[Frontier]:
+    """Where the floor ends at what was never seen; under stairs there is no floor to find."""
+    taken = np.zeros(floor.labels.shape, dtype=bool)
+    for way in stairs:
+        if way.lower == floor.number:
+            taken |= way.lower_cells
+        if way.upper == floor.number:
+            taken |= way.upper_cells
+    borders = find_frontiers(floor.here.space, floor.here.storey.z, known=taken)
+    cells = np.array([border.cell for border in borders], dtype=np.float64).reshape(-1, 2)
     return [
-        RegionEdge(
-            grid.region_ids[opening.a],
-            grid.region_ids[opening.b],
-            opening.width,
-            np.array([*grid.xy_of(*opening.middle.tolist()), here.storey.z]),
-        )
-        for opening in find_openings(cut.labels, grid.resolution)
+        Frontier(floor.number, region_id, border.position, border.width)
+        for region_id, border in zip(floor.at(cells), borders, strict=True)
     ]
 
 
-def _with_names(regions: list[Region]) -> tuple[Region, ...]:
+def _summary(floor: _FloorCut) -> Floor:
+    storey, space = floor.here.storey, floor.here.space
+    return Floor(floor.number, storey.z, storey.ceiling_z, float(space.free.sum() * space.resolution**2))
+
+
+def _grid(floor: _FloorCut, revision: int) -> FloorGrid:
+    space = floor.here.space
+    labels = floor.labels.astype(np.uint16)
+    return FloorGrid(
+        floor.number, space.origin, space.resolution, space.occupancy, labels, floor.ids, revision
+    )
+
+
+def _with_names(regions: Sequence[Region]) -> tuple[Region, ...]:
     """Display names: the function, numbered from its second region on in the order of their ids."""
     seen: Counter[str] = Counter()
     names = {}

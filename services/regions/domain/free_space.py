@@ -2,21 +2,25 @@
 3).
 
 Two masks with two meanings. F is the room floor, furniture included: only walls bound it, found in the high
-band of the cloud so that furniture does not cut rooms. Occupancy is what a robot meets: furniture is occupied
-there. In both, what was never seen is not free.
+band of the cloud, and above it, so that furniture does not cut rooms. Occupancy is what a robot meets: furniture
+is occupied there. In both, what was never seen is not free, nor what was only seen through a window.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
 
 from ovip.scene.grid import FREE, OCCUPIED, UNKNOWN
-from ovip.scene.types import F64, I64, U8, Bools
-from services.regions.domain.evidence import CELL, SLAB, Counts, FloorEvidence, unpack_voxel
+from ovip.scene.types import U8, Bools
+from services.regions.domain.columns import Bandwidths, Columns, Marks, Span, marked
+from services.regions.domain.evidence import CELL, FloorEvidence
 from services.regions.domain.floors import Storey
+
+_AROUND = np.ones((3, 3), bool)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,26 +31,43 @@ class FreeSpaceParams:
     robot. wall: the high band; above most furniture, below the head of a door (2.0 m). low_wall: the band
     that stands in for it in a column whose high band was never looked at. wall_share: a wall holds hits in at
     least this share of its band's voxels. min_wall_height: and in at least so many metres of it.
-    min_wall_cells: smaller clumps (poles, chains of lamps) are no walls. min_obstacle: hits (voxels x frames)
-    that make a column an obstacle; a column with fewer is unknown. driven: rays lower than this prove floor
-    that was not hit. carried: cameras up to this height were carried over the floor. body_radius: and its
-    bearer's floor is free, metres. fill_area: holes in F up to this many square metres, enclosed by F alone,
-    are filled (a blind spot behind a sofa is no wall); occupancy keeps them unknown. specks: pieces of
-    occupancy's free floor below this, square metres, are unknown.
+    min_wall_cells: smaller clumps (poles, chains of lamps) are no walls.
+    upper: above wardrobes and open doors, at most up to `ceiling_gap` under the ceiling; a wall goes on there.
+    sill: a wall under a window fills `sill_share` of it. min_lintel: metres of wall in `upper` over a window.
+    overhead: ceilings, roofs. roof_share: of a room's cells that have one, where cameras see ceilings. open_share:
+    outdoors has less than that. min_outdoors: smaller pieces are neither, square metres.
+    min_obstacle: hits (voxels x frames) that make a column an obstacle; a column with fewer is unknown. driven:
+    rays lower than this prove floor that was not hit. carried: cameras up to this height were carried over the
+    floor. body_radius: and its bearer's floor is free, metres. fill_area: holes in F up to this many square
+    metres, enclosed by F alone, are filled (a blind spot behind a sofa is no wall); occupancy keeps them unknown.
+    below: rays in these heights go through a hole in the floor. min_hole: square metres of one. hole_share: of its
+    cells in which rays do. specks: pieces of occupancy's free floor below this, square metres, are unknown.
     """
 
-    floor_band: tuple[float, float] = (-0.15, 0.10)
-    body: tuple[float, float] = (0.10, 1.40)
-    wall: tuple[float, float] = (1.40, 2.00)
-    low_wall: tuple[float, float] = (0.40, 1.40)
+    floor_band: Span = (-0.15, 0.10)
+    body: Span = (0.10, 1.40)
+    wall: Span = (1.40, 2.00)
+    low_wall: Span = (0.40, 1.40)
     wall_share: float = 0.5
     min_wall_height: float = 0.2
     min_wall_cells: int = 6
+    upper: Span = (2.10, 2.75)
+    ceiling_gap: float = 0.10
+    sill: Span = (0.10, 0.70)
+    sill_share: float = 0.7
+    min_lintel: float = 0.1
+    overhead: Span = (2.10, 8.00)
+    roof_share: float = 0.25
+    open_share: float = 0.02
+    min_outdoors: float = 0.5
     min_obstacle: int = 2
     driven: float = 0.35
     carried: float = 2.2
     body_radius: float = 0.20
     fill_area: float = 1.0
+    below: Span = (-0.37, -0.12)
+    min_hole: float = 0.25
+    hole_share: float = 0.25
     specks: float = 0.05
 
 
@@ -71,102 +92,136 @@ def find_free_space(
 ) -> FreeSpace:
     """F, walls and occupancy of one storey; `(0, 0)` masks where nothing of it was seen."""
     params = params or FreeSpaceParams()
-    columns = _Columns.of(evidence, storey, params)
-    wall = _walls(columns, params)
-    floor = columns.count("hits", *params.floor_band) > 0
-    stood = _disc_dilate(columns.count("stood", 0.0, params.carried) > 0, params.body_radius)
-    met = columns.count("hits", *params.body)
-    obstacle = met >= params.min_obstacle
-    seen = floor | stood | obstacle | (columns.count("passes", 0.0, params.wall[1]) > 0)
-    driven = (floor | stood | (columns.count("passes", 0.0, params.driven) > 0)) & (met == 0)
+    wanted = _bands(storey, params)
+    margin = int(np.ceil(params.body_radius / CELL)) + 1
+    seen = marked(evidence, storey, wanted, lambda columns: _judged(columns, params), margin)
+    if seen is None:
+        none = np.zeros((0, 0), bool)
+        return FreeSpace((0.0, 0.0), CELL, none, none, none.astype(np.uint8))
+    return _space(seen, params)
+
+
+def _space(seen: Marks, params: FreeSpaceParams) -> FreeSpace:
+    marks = seen.masks
+    wall = _walls(marks, params)
+    hole = _holes(marks, params)
+    carried = _discs(seen.stood, params.body_radius)
+    open_floor = (marks["air"] | marks["floor"] | marks["obstacle"] | carried) & ~wall & ~hole
+    reached = _reached(_under_a_roof(open_floor, marks, seen.stood, params), seen.stood)
+    free = _fill(reached, wall | hole, params.fill_area)
+    driven = (marks["floor"] | marks["driven"] | carried) & ~marks["met"] & free
     return FreeSpace(
-        origin=(float(columns.low[0] * CELL), float(columns.low[1] * CELL)),
+        origin=(seen.window.low[0] * CELL, seen.window.low[1] * CELL),
         resolution=CELL,
-        free=_fill(seen & ~wall, wall, params.fill_area),
+        free=free,
         wall=wall,
-        occupancy=_occupancy(driven, obstacle | wall, params.specks),
+        occupancy=_occupancy(driven, marks["obstacle"] | wall, params.specks),
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Columns:
-    """A storey's evidence as `(row, column, metres above the floor, count)`, one stream at a time."""
-
-    low: I64
-    shape: tuple[int, int]
-    streams: dict[str, tuple[I64, I64, F64, I64]]
-
-    @classmethod
-    def of(cls, evidence: FloorEvidence, storey: Storey, params: FreeSpaceParams) -> _Columns:
-        top = max(params.wall[1], params.body[1])
-        raw = {
-            "hits": _above(evidence.hits, storey, CELL, params.floor_band[0], top),
-            "passes": _above(evidence.passes, storey, SLAB, 0.0, top),
-            "stood": _above(evidence.stood, storey, CELL, 0.0, params.carried),
-        }
-        xy = np.concatenate([index for index, _, _ in raw.values()])
-        margin = int(np.ceil(params.body_radius / CELL)) + 1
-        low = xy.min(axis=0) - margin if len(xy) else np.zeros(2, np.int64)
-        size = xy.max(axis=0) + margin + 1 - low if len(xy) else np.zeros(2, np.int64)
-        streams = {
-            name: (index[:, 1] - low[1], index[:, 0] - low[0], height, count)
-            for name, (index, height, count) in raw.items()
-        }
-        return cls(low, (int(size[1]), int(size[0])), streams)
-
-    def count(self, stream: str, bottom: float, top: float) -> I64:
-        """Summed counts of a column between two heights above the floor -> `(R, C)`."""
-        rows, columns, _, counts = self._between(stream, bottom, top)
-        total = np.zeros(self.shape, np.int64)
-        np.add.at(total, (rows, columns), counts)
-        return total
-
-    def filled(self, bottom: float, top: float) -> I64:
-        """How many voxels of a column between two heights hold a hit -> `(R, C)`."""
-        rows, columns, _, _ = self._between("hits", bottom, top)
-        total = np.zeros(self.shape, np.int64)
-        np.add.at(total, (rows, columns), 1)
-        return total
-
-    def _between(self, stream: str, bottom: float, top: float) -> tuple[I64, I64, F64, I64]:
-        rows, columns, heights, counts = self.streams[stream]
-        inside = (heights >= bottom) & (heights < top)
-        return rows[inside], columns[inside], heights[inside], counts[inside]
+def _bands(storey: Storey, params: FreeSpaceParams) -> Bandwidths:
+    upper = _upper(storey, params)
+    air = (0.0, max(upper[1], params.wall[1]))
+    walls = {"wall": params.wall, "low_wall": params.low_wall, "upper": upper, "sill": params.sill}
+    hits = {"floor": params.floor_band, "body": params.body, "overhead": params.overhead, **walls}
+    passes = {"air": air, "driven": (0.0, params.driven), "below": params.below, **walls}
+    return Bandwidths(hits, passes, (-CELL, params.carried))  # a camera in the floor's own cube stands on it
 
 
-def _above(counts: Counts, storey: Storey, layer: float, bottom: float, top: float) -> tuple[I64, F64, I64]:
-    """x, y indices `(N, 2)`, heights above the floor of the layers' middles `(N,)` and counts `(N,)`."""
-    keys, values = counts.items()
-    index = unpack_voxel(keys)
-    world = (index[:, 2] + 0.5) * layer
-    height = world - storey.z
-    inside = (height >= bottom) & (height < top) & (world >= storey.low) & (world < storey.high)
-    return index[inside, :2], height[inside].astype(np.float64), values[inside]
+def _judged(columns: Columns, params: FreeSpaceParams) -> dict[str, Bools]:
+    """What each column is, as far as it tells by itself.
 
-
-def _walls(columns: _Columns, params: FreeSpaceParams) -> Bools:
-    """Columns filled with hits through the high band, hit at least as often as seen through.
-
-    A column whose high band was neither hit nor seen through (a camera that never looks up) is judged by the
-    band below it, alone.
+    high: filled through the high band, or through the one below it where nobody looked at the high one (a camera
+    that never looks up). open_above, goes_on: seen through, or wall, above where furniture ends. edge: filled as
+    over an opening, or as under one; windowed: both. through: rays on either side of the floor's height.
     """
-    high = _is_filled(columns, params.wall, params)
-    looked_at = (columns.count("hits", *params.wall) > 0) | (columns.count("passes", *params.wall) > 0)
-    low = _is_filled(columns, params.low_wall, params)
-    return _without_specks(high | (~looked_at & low), params.min_wall_cells)
+    hits, passes = columns.hits, columns.passes
+    share, height = params.wall_share, params.min_wall_height
+    looked_at = (hits["wall"] > 0) | (passes["wall"] > 0)
+    low = ~looked_at & columns.is_filled("low_wall", share, height)
+    seen = (hits["floor"] > 0) | (hits["body"] > 0) | (passes["air"] > 0)
+    over = columns.is_filled("upper", 0.0, params.min_lintel)
+    under = columns.is_filled("sill", params.sill_share, height)
+    return {
+        "floor": hits["floor"] > 0,
+        "met": hits["body"] > 0,
+        "obstacle": hits["body"] >= params.min_obstacle,
+        "air": passes["air"] > 0,
+        "driven": passes["driven"] > 0,
+        "through": (passes["below"] > 0) & (passes["driven"] > 0),
+        "high": low | columns.is_filled("wall", share, height),
+        "windowed": over & under,
+        "edge": over | under,
+        "overhead": seen & (hits["overhead"] > 0),
+        "open_above": passes["upper"] > 0,
+        "goes_on": columns.goes_on("upper"),
+    }
 
 
-def _is_filled(columns: _Columns, band: tuple[float, float], params: FreeSpaceParams) -> Bools:
-    filled = columns.filled(*band)
-    hits_a_voxel = columns.count("hits", *band) / np.maximum(filled, 1)
-    passes_a_slab = columns.count("passes", *band) / max(1.0, round((band[1] - band[0]) / SLAB))
-    enough = max(params.min_wall_height, params.wall_share * (band[1] - band[0])) / CELL
-    walls: Bools = (filled >= enough - 1e-9) & (hits_a_voxel >= passes_a_slab)
-    return walls
+def _upper(storey: Storey, params: FreeSpaceParams) -> Span:
+    """The band above furniture and below the ceiling; empty where the ceiling is too low for one."""
+    low, high = params.upper
+    if storey.ceiling_z is None:
+        return low, high
+    return low, max(low, min(high, storey.ceiling_z - storey.z - params.ceiling_gap))
+
+
+def _walls(marks: Mapping[str, Bools], params: FreeSpaceParams) -> Bools:
+    """What fills the high band and is not seen to end above it, where furniture ends; and windows in walls.
+
+    A column ends above where rays pass over it and no neighbour goes on. Where nobody looked that high, it is a wall.
+    """
+    ends = marks["open_above"] & ~_widened(marks["goes_on"])
+    return _without_specks((marks["high"] & ~ends) | marks["windowed"], params.min_wall_cells)
+
+
+def _holes(marks: Mapping[str, Bools], params: FreeSpaceParams) -> Bools:
+    """Stairwells and edges: patches in which nothing was ever hit and many rays go on through the floor's height."""
+    solid = marks["floor"] | marks["met"]
+    empty = marks["air"] & ~_widened(solid)
+    pieces, found = ndimage.label(empty)
+    cells = np.bincount(pieces.ravel(), minlength=found + 1)
+    fallen = np.bincount(pieces[marks["through"]], minlength=found + 1)
+    hole = (cells * CELL**2 >= params.min_hole) & (fallen >= params.hole_share * cells)
+    hole[0] = False
+    grown: Bools = _widened(hole[pieces]) & ~solid
+    return grown
+
+
+def _under_a_roof(free: Bools, marks: Mapping[str, Bools], stood: Bools, params: FreeSpaceParams) -> Bools:
+    """F without what lies outdoors: beyond a lintel or a sill, where no camera was and nothing is overhead.
+
+    Only where cameras that came this way saw the ceiling in every room that they were in; else its absence says
+    nothing.
+    """
+    pieces, found = ndimage.label(free & ~_widened(marks["edge"]))
+    cells = np.bincount(pieces.ravel(), minlength=found + 1)
+    cells[0] = 0
+    roofed = np.bincount(pieces[marks["overhead"]], minlength=found + 1)
+    large = cells * CELL**2 >= params.min_outdoors
+    entered = np.isin(np.arange(found + 1), pieces[stood])
+    rooms = entered & large
+    if not rooms.any() or (roofed < params.roof_share * cells)[rooms].any():
+        return free
+    outdoors = ~entered & large & (roofed < params.open_share * cells)
+    indoors: Bools = free & ~outdoors[pieces]
+    return indoors
+
+
+def _reached(free: Bools, stood: Bools) -> Bools:
+    """The connected pieces of F in which a camera was; all, where none was in any."""
+    pieces, _ = ndimage.label(free)
+    entered = np.unique(pieces[stood & free])
+    if not len(entered):
+        return free
+    kept = np.zeros(int(pieces.max()) + 1, bool)
+    kept[entered] = True
+    reached: Bools = kept[pieces]
+    return reached
 
 
 def _without_specks(wall: Bools, min_cells: int) -> Bools:
-    pieces, _ = ndimage.label(wall, np.ones((3, 3)))
+    pieces, _ = ndimage.label(wall, _AROUND)
     kept: Bools = wall & (np.bincount(pieces.ravel()) >= min_cells)[pieces] if wall.any() else wall
     return kept
 
@@ -177,7 +232,7 @@ def _fill(free: Bools, wall: Bools, fill_area: float) -> Bools:
     if not found:
         return free
     small = np.bincount(holes.ravel()) * CELL**2 <= fill_area
-    beside_wall = np.unique(holes[ndimage.binary_dilation(wall, np.ones((3, 3)))])
+    beside_wall = np.unique(holes[_widened(wall)])
     edge = np.unique(np.concatenate([holes[0], holes[-1], holes[:, 0], holes[:, -1]]))
     small[beside_wall] = small[edge] = small[0] = False
     filled: Bools = free | small[holes]
@@ -188,11 +243,29 @@ def _occupancy(driven: Bools, blocked: Bools, specks: float) -> U8:
     free = driven & ~blocked
     pieces, _ = ndimage.label(free)
     free &= (np.bincount(pieces.ravel()) * CELL**2 >= specks)[pieces]
-    return np.where(blocked, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)
+    occupancy = np.full(free.shape, UNKNOWN, np.uint8)
+    occupancy[free] = FREE
+    occupancy[blocked] = OCCUPIED
+    return occupancy
 
 
-def _disc_dilate(mask: Bools, radius: float) -> Bools:
-    if not mask.any():
-        return mask
-    grown: Bools = ndimage.distance_transform_edt(~mask, sampling=CELL) <= radius + 1e-9
-    return grown
+def _widened(mask: Bools) -> Bools:
+    """The mask and the eight neighbours of each of its cells."""
+    wide = mask.copy()
+    for axis in (0, 1):
+        thin = np.moveaxis(wide.copy(), axis, 0)
+        out = np.moveaxis(wide, axis, 0)
+        out[1:] |= thin[:-1]
+        out[:-1] |= thin[1:]
+    return wide
+
+
+def _discs(centres: Bools, radius: float) -> Bools:
+    """Cells within `radius` metres of a centre."""
+    reach = int(radius / CELL + 1e-9)
+    down, across = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    near = np.hypot(down, across) * CELL <= radius + 1e-9
+    at = np.argwhere(np.pad(centres, reach))
+    discs = np.zeros((centres.shape[0] + 2 * reach, centres.shape[1] + 2 * reach), bool)
+    discs[np.add.outer(at[:, 0], down[near]), np.add.outer(at[:, 1], across[near])] = True
+    return discs[reach : reach + centres.shape[0], reach : reach + centres.shape[1]]

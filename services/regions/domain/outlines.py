@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
-from skimage.measure import approximate_polygon
 
 from ovip.scene.types import F64, I64, Bools
 
@@ -61,35 +60,38 @@ def _border(cells: Bools) -> I64:
 
 def _rings(border: I64) -> list[F64]:
     """The edges strung into closed rings of corners `(N, 2)`; where two ways part, the left one is taken."""
-    ways: dict[tuple[int, int], list[tuple[int, int]]] = defaultdict(list)
-    for x, y, dx, dy in border.tolist():
-        ways[x, y].append((dx, dy))
-    rings = []
-    for x, y, dx, dy in border.tolist():
-        if (dx, dy) not in ways[x, y]:
-            continue
-        at, step, corners = (x, y), (dx, dy), []
-        while step in ways[at]:
-            ways[at].remove(step)
-            at = (at[0] + step[0], at[1] + step[1])
-            turned = _next_step(ways[at], step)
-            if turned != step:
-                corners.append(at)
-            step = turned
-        if step != (dx, dy):
-            corners.append(at)
-        rings.append(np.array(corners, dtype=np.float64))
+    if not len(border):
+        return []
+    after = _successors(border)
+    ends, turns = border[:, :2] + border[:, 2:], (border[:, 2:] != border[after, 2:]).any(axis=1)
+    way, rings = after.tolist(), []
+    strung = [False] * len(way)
+    for first in range(len(way)):
+        ring, edge = [], first
+        while not strung[edge]:
+            strung[edge] = True
+            ring.append(edge)
+            edge = way[edge]
+        if ring:
+            rings.append(ends[ring][turns[ring]].astype(np.float64))
     return rings
 
 
-def _next_step(ways: list[tuple[int, int]], step: tuple[int, int]) -> tuple[int, int]:
-    """The way on after `step`: left, else straight, else right; the same step where the ring is closed."""
-    left = (-step[1], step[0])
-    right = (step[1], -step[0])
-    return next((way for way in (left, step, right) if way in ways), step)
+def _successors(border: I64) -> I64:
+    """For each edge `(K, 4)` the one that goes on from its end: left where there is a choice -> `(K,)`."""
+    x, y, dx, dy = border.T
+    width = int(x.max()) + 2
+    starts, ends = y * width + x, (y + dy) * width + x + dx
+    order = np.argsort(starts, kind="stable")
+    first = np.searchsorted(starts[order], ends)
+    other = np.minimum(first + 1, len(order) - 1)
+    one, two = order[first], order[other]
+    left = (dx[two] == -dy) & (dy[two] == dx) & (starts[two] == ends)
+    chosen: I64 = np.where(left, two, one)
+    return chosen
 
 
 def _straightened(ring: F64, tolerance: float) -> F64:
-    """The open ring with fewer points, or as it is where too few would remain."""
-    fewer: F64 = approximate_polygon(np.vstack([ring, ring[:1]]), tolerance)[:-1]
+    """The open ring with fewer points, or as it is where too few would remain (Douglas and Peucker 1973)."""
+    fewer = cv2.approxPolyDP(ring.astype(np.int32)[:, None], tolerance, True)[:, 0].astype(np.float64)
     return fewer if len(fewer) >= 3 else ring

@@ -1,4 +1,4 @@
-"""Pace: when a scene has changed enough to be partitioned again, a burst of changes once."""
+"""Pace: when a scene is partitioned again; a burst of changes once, a steady stream every so often."""
 
 from __future__ import annotations
 
@@ -7,16 +7,20 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class PaceParams:
-    """burst: this many changes are enough at once. quiet_s: any change is enough when nothing has changed for so
-    long. min_interval_s: but never sooner than this after the last partition."""
+    """quiet_s: a change is answered once nothing has changed for so long, so that a burst is answered once.
 
-    burst: int = 10
+    min_interval_s: never sooner than this after the last partition. No change waits longer for quiet than the
+    greater of the two, so that a stream of changes that never pauses is answered at that interval.
+    """
+
     quiet_s: float = 2.0
     min_interval_s: float = 5.0
 
 
-def is_due(changes: int, since_change_s: float, since_partition_s: float, params: PaceParams) -> bool:
-    """Whether to partition now, `changes` after the last partition; never with none."""
-    if changes <= 0 or since_partition_s < params.min_interval_s:
+def is_due(since_first_s: float, since_last_s: float, since_partition_s: float, params: PaceParams) -> bool:
+    """Whether to partition now: seconds since the first and the last change that no partition has seen, and
+    since the last partition (infinite where there was none)."""
+    if since_partition_s < params.min_interval_s:
         return False
-    return changes >= params.burst or since_change_s >= params.quiet_s
+    patience = max(params.quiet_s, params.min_interval_s)
+    return since_last_s >= params.quiet_s or since_first_s >= patience

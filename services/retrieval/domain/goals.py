@@ -4,16 +4,16 @@ path).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ovip.scene.answers import Goal
+from ovip.scene.building import Building, Spot, joined
 from ovip.scene.grid import FloorGrid
-from ovip.scene.types import F64, Bools, Floor
-from ovip.scene.walking import distance_field, path_length, shortest_path, traversable
-from services.retrieval.domain.viewpoints import snap
+from ovip.scene.no_way import why_no_way
+from ovip.scene.types import F64, Bools
+from ovip.scene.walking import path_length
 
 NO_PATH: F64 = np.zeros((0, 3))
 
@@ -42,49 +42,42 @@ class Way:
 
 
 def way_to(
-    box: F64,
-    start: F64 | None,
-    grid: FloorGrid | None,
-    floor_z: float,
-    radius: float,
-    params: GoalParams | None = None,
+    box: F64, start: F64 | None, building: Building, floor: int | None, params: GoalParams | None = None
 ) -> Way:
-    """The standoff pose for a box `(6,)` with the shortest way from `start` `(3,)`, for a robot of `radius`
-    metres.
+    """The standoff pose for a box `(6,)` on a storey, with the shortest way from `start` `(3,)`, over stairs where
+    the robot is on another storey.
 
     Without a start the place nearest to the box is taken. No grid, no floor to stand on and no way are no
     errors.
     """
     params = params or GoalParams()
-    if grid is None:
+    grid = None if floor is None else building.grids.get(floor)
+    if floor is None or grid is None:
         return Way(None, NO_PATH, "no path: the scene has no floor grid yet")
-    standing = traversable(grid, radius)
+    standing, floor_z = building.standing[floor], building.heights.get(floor, 0.0)
     if not standing.any():
         return Way(
-            None, NO_PATH, f"no path: the floor grid has no place where a robot of {radius:.2f} m can stand"
+            None,
+            NO_PATH,
+            f"no path: the floor grid has no place where a robot of {building.radius:.2f} m can stand",
         )
     away = footprint_distance(grid, box)
-    begin = None if start is None else _start_cell(grid, standing, start, params)
+    begin = None if start is None else _begin(building, start, params)
     if begin is None:
         cell = _nearest_place(standing, away, params)
         missing = (
             "no start position is known" if start is None else "the robot is not near floor it can stand on"
         )
         return _without_path(grid, cell, box, floor_z, f"no path: {missing}")
-    walked = distance_field(standing, begin, grid.resolution)
+    walked = building.distances(begin)[floor]
     cell = _standoff(standing & np.isfinite(walked), away, walked, params)
     if cell is None:
-        cell = _nearest_place(standing, away, params)
-        return _without_path(
-            grid, cell, box, floor_z, "no path: no floor near it can be reached from the robot"
-        )
-    goal = _facing(grid, cell, box, floor_z)
-    path = shortest_path(grid, grid.xy_of(*begin), goal.position[:2], radius)
-    if not len(path):
-        path = goal.position[None, :2]
+        return _out_of_reach(building, begin, floor, away, box, params)
+    legs = building.legs(begin, (floor, *cell))
+    path = joined(legs, [building.centres(leg) for leg in legs])
     apart = float(away[cell])
     why = "" if apart <= params.far else f"the nearest place that can be reached is {apart:.1f} m from it"
-    return Way(goal, np.column_stack([path, np.full(len(path), floor_z)]), why)
+    return Way(_facing(grid, cell, box, floor_z), path, why)
 
 
 def footprint_distance(grid: FloorGrid, box: F64) -> F64:
@@ -97,23 +90,14 @@ def footprint_distance(grid: FloorGrid, box: F64) -> F64:
     return np.asarray(np.hypot(dx[None, :], dy[:, None]))
 
 
-def floor_of(z: float, floors: Sequence[Floor], slack: float = 0.3) -> Floor | None:
-    """The storey whose floor is the highest at or below height `z` (within `slack`); the lowest where all are
-    above.
-    """
-    if not floors:
-        return None
-    below = [floor for floor in floors if floor.z <= z + slack]
-    return max(below, key=lambda floor: floor.z) if below else min(floors, key=lambda floor: floor.z)
-
-
 def length(path: F64) -> float:
     """Metres along the path."""
     return path_length(path)
 
 
-def _start_cell(grid: FloorGrid, standing: Bools, start: F64, params: GoalParams) -> tuple[int, int] | None:
-    return snap(standing, grid.cell_of(start[:2]), params.start_reach / grid.resolution)
+def _begin(building: Building, start: F64, params: GoalParams) -> Spot | None:
+    floor = building.floor_at(start)
+    return None if floor is None else building.nearest(start, floor, params.start_reach)
 
 
 def _standoff(reachable: Bools, away: F64, walked: F64, params: GoalParams) -> tuple[int, int] | None:
@@ -132,6 +116,17 @@ def _nearest_place(standing: Bools, away: F64, params: GoalParams) -> tuple[int,
 def _argmin(cost: F64) -> tuple[int, int]:
     row, column = np.unravel_index(int(np.argmin(cost)), cost.shape)
     return int(row), int(column)
+
+
+def _out_of_reach(
+    building: Building, begin: Spot, floor: int, away: F64, box: F64, params: GoalParams
+) -> Way:
+    """The place nearest to the box, and why it cannot be walked to."""
+    cell = _nearest_place(building.standing[floor], away, params)
+    why = "no path: no floor near it can be reached from the robot"
+    if cell is not None:
+        why += f": {why_no_way(building, begin, (floor, *cell))}"
+    return _without_path(building.grids[floor], cell, box, building.heights.get(floor, 0.0), why)
 
 
 def _without_path(grid: FloorGrid, cell: tuple[int, int] | None, box: F64, floor_z: float, why: str) -> Way:

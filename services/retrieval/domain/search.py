@@ -15,15 +15,15 @@ import numpy as np
 
 from ovip.errors import InvalidInput
 from ovip.scene.answers import Answer, Query
-from ovip.scene.grid import FloorGrid
+from ovip.scene.building import Building
 from ovip.scene.types import F64, Bools, Region
-from ovip.scene.walking import distance_field, traversable
 from services.retrieval.domain.coverage import View, region_cells
 from services.retrieval.domain.schedule import ScheduleParams, nearest, next_region
 from services.retrieval.domain.viewpoints import HEADINGS, ViewpointParams, plan_waypoints, snap
 from services.retrieval.domain.votes import Sighting
 
-_SNAP_METRES = 2.0
+SNAP_METRES = 2.0
+"""Metres within which a robot's place must be near floor to stand on."""
 
 
 class Phase(StrEnum):
@@ -107,48 +107,50 @@ def viewpoint_id(waypoint: Waypoint, heading: int) -> str:
 
 def plan(
     regions: Sequence[Region],
-    grids: Mapping[int, FloorGrid],
-    heights: Mapping[int, float],
+    building: Building,
     place: F64 | None,
     floor: int,
-    radius: float,
     params: ViewpointParams | None = None,
 ) -> tuple[Waypoint, ...]:
     """Waypoints that cover the regions, region by region.
 
-    On the robot's own floor only places that it can walk to count; on others every place where it could
-    stand.
+    On the robot's own floor, and on those that it gets to over stairs, only places that it can walk to count; on
+    others every place where it could stand.
     """
+    standing = reachable(building, place, floor)
     waypoints: list[Waypoint] = []
     for region in regions:
-        grid = grids.get(region.floor)
+        grid = building.grids.get(region.floor)
         if grid is None:
             continue
-        standing = reachable(grid, place if region.floor == floor else None, radius)
-        for cell in plan_waypoints(grid, region_cells(grid, region.region_id), standing, params):
-            position = np.append(grid.xy_of(*cell), heights.get(region.floor, 0.0))
+        cells = plan_waypoints(grid, region_cells(grid, region.region_id), standing[region.floor], params)
+        for row, column in cells:
+            position = building.position((region.floor, row, column))
             waypoints.append(Waypoint(f"w{len(waypoints):03d}", region.region_id, region.floor, position))
     return tuple(waypoints)
 
 
-def reachable(grid: FloorGrid, place: F64 | None, radius: float) -> Bools:
-    """Cells where the robot can stand and, where its place is known, walk to -> `(R, C)`."""
-    standing = traversable(grid, radius)
-    if place is None:
-        return standing
-    start = snap(standing, grid.cell_of(place[:2]), _SNAP_METRES / grid.resolution)
-    return (
-        standing
-        if start is None
-        else standing & np.isfinite(distance_field(standing, start, grid.resolution))
-    )
+def reachable(building: Building, place: F64 | None, floor: int) -> dict[int, Bools]:
+    """By storey, cells where the robot can stand and, where there is a way to the storey, walk to -> `(R, C)`."""
+    fields = walked(building, place, floor)
+    if fields is None:
+        return dict(building.standing)
+    cells = {level: np.isfinite(field) for level, field in fields.items()}
+    return {level: mask if mask.any() else building.standing[level] for level, mask in cells.items()}
+
+
+def walked(building: Building, place: F64 | None, floor: int) -> dict[int, F64] | None:
+    """Metres walked from a place to every cell, by storey; None where it is not known or nowhere near floor."""
+    if place is None or floor not in building.grids:
+        return None
+    start = building.nearest(place, floor, SNAP_METRES)
+    return None if start is None else building.distances(start)
 
 
 def next_step(
     search: Search,
     regions: Sequence[Region],
-    grids: Mapping[int, FloorGrid],
-    radius: float,
+    building: Building,
     params: ScheduleParams | None = None,
 ) -> Step | None:
     """The next heading at this waypoint, else the nearest waypoint of this region, else of the next region
@@ -162,7 +164,7 @@ def next_step(
     here = _last_waypoint(search)
     if here is not None and here in left:
         return Step(here, search.open_at(here)[0])
-    walk = _walk(search, grids, radius)
+    walk = _Walk(search.floor, building, walked(building, search.place, search.floor))
     if here is not None and (step := _nearest_of(search, left, here.region_id, walk)) is not None:
         return step
     return _in_next_region(search, left, regions, walk, params)
@@ -220,39 +222,29 @@ def _last_waypoint(search: Search) -> Waypoint | None:
     return next((w for w in search.waypoints if last.startswith(f"{w.waypoint_id}.")), None)
 
 
-def _walk(search: Search, grids: Mapping[int, FloorGrid], radius: float) -> _Walk:
-    grid = grids.get(search.floor)
-    if grid is None or search.place is None:
-        return _Walk(search.floor, None, None)
-    standing = traversable(grid, radius)
-    start = snap(standing, grid.cell_of(search.place[:2]), _SNAP_METRES / grid.resolution)
-    if start is None:
-        return _Walk(search.floor, grid, None)
-    return _Walk(search.floor, grid, distance_field(standing, start, grid.resolution))
-
-
 @dataclass(frozen=True, slots=True)
 class _Walk:
-    """Metres walked from where the robot is; without a grid or a start every place of its floor counts as
+    """Metres walked from where the robot is, over stairs too; without fields every place of its floor counts as
     near.
     """
 
     floor: int
-    grid: FloorGrid | None
-    field: F64 | None
+    building: Building
+    fields: Mapping[int, F64] | None
 
     def to(self, xy: F64, floor: int, slack: float = 0.0) -> float:
-        """Metres to a place; infinite on another floor or without a way. slack: metres it may be off."""
-        if floor != self.floor:
+        """Metres to a place; infinite without a way. slack: metres it may be off."""
+        if self.fields is None:
+            return 0.0 if floor == self.floor else float("inf")
+        if floor not in self.fields:
             return float("inf")
-        if self.grid is None or self.field is None:
-            return 0.0
-        row, column = self.grid.cell_of(xy)
-        inside = 0 <= row < self.field.shape[0] and 0 <= column < self.field.shape[1]
-        if inside and (np.isfinite(self.field[row, column]) or not slack):
-            return float(self.field[row, column])
-        near = snap(np.isfinite(self.field), (row, column), slack / self.grid.resolution)
-        return float("inf") if near is None else float(self.field[near])
+        grid, field = self.building.grids[floor], self.fields[floor]
+        row, column = grid.cell_of(xy)
+        inside = 0 <= row < field.shape[0] and 0 <= column < field.shape[1]
+        if inside and (np.isfinite(field[row, column]) or not slack):
+            return float(field[row, column])
+        near = snap(np.isfinite(field), (row, column), slack / grid.resolution)
+        return float("inf") if near is None else float(field[near])
 
 
 def _nearest_of(search: Search, left: Sequence[Waypoint], region_id: str, walk: _Walk) -> Step | None:
@@ -290,5 +282,5 @@ def _region_distance(region: Region, left: Sequence[Waypoint], walk: _Walk) -> f
     nearest_waypoint = min(walk.to(w.position[:2], w.floor, 0.5) for w in places)
     if not np.isfinite(nearest_waypoint):
         return float("inf")
-    g = walk.to(region.centroid[:2], region.floor, _SNAP_METRES)
+    g = walk.to(region.centroid[:2], region.floor, SNAP_METRES)
     return g if np.isfinite(g) else nearest_waypoint

@@ -32,6 +32,17 @@ def test_without_json_a_table_lines_up_names_and_values(command: typer.Typer) ->
     assert lines[1:] == ["start", "data  ready_s", " new      1.5"]
 
 
+def test_a_row_of_very_many_columns_is_printed_as_a_column_of_its_own(
+    command: typer.Typer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows: list[Row] = [{f"c{k}": k * m2 for k in range(40)} for m2 in (1, 20)]
+    monkeypatch.setitem(bench.MEASURES, bench.Bench.REGIONS, lambda _: rows)
+    lines = CliRunner().invoke(command, ["regions"]).stdout.splitlines()
+    assert len(lines) == 2 + 40
+    assert [line.split() for line in (lines[2], lines[-1])] == [["c0", "0", "0"], ["c39", "39", "780"]]
+    assert len({len(line) for line in lines[2:]}) == 1
+
+
 def test_an_unknown_bench_is_refused_with_those_that_there_are(command: typer.Typer) -> None:
     result = CliRunner().invoke(command, ["sleep"])
     assert result.exit_code == 2
@@ -56,6 +67,18 @@ def test_sizes_are_given_as_numbers_with_commas(
         None,
         7,
     )
+
+
+def test_floors_are_given_in_square_metres(command: typer.Typer, monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[bench.Options] = []
+
+    def measure(options: bench.Options) -> list[Row]:
+        given.append(options)
+        return [{"m2": 200}]
+
+    monkeypatch.setitem(bench.MEASURES, bench.Bench.REGIONS, measure)
+    assert CliRunner().invoke(command, ["regions", "--areas", "200,10000"]).exit_code == 0
+    assert given[0].areas == [200, 10_000]
 
 
 @pytest.mark.parametrize("words", ["", "a", "100,", "0", "-5", "1.5", "²"])

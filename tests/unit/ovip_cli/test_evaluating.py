@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass, field
 
 import pytest
 from typer.testing import CliRunner
 
-from lab.evaluation.experiment import Options, Result
+from lab.evaluation.experiment import Options, Result, Row
 from ovip.errors import InvalidInput
 from ovip_cli import evaluating
 from ovip_cli.app import app
@@ -61,6 +62,28 @@ def test_a_person_sees_the_compat_table_and_the_strict_one(asked: list[Options])
         ["overlap", "0.250", "-"],
         ["ours", "0.500", "7"],
     ]
+
+
+@dataclass(frozen=True, slots=True)
+class MoreToSay(Result):
+    """What a protocol adds to every result's fields."""
+
+    worst: list[Row] = field(default_factory=list)
+    nothing: list[Row] = field(default_factory=list)
+
+
+def test_what_only_one_protocol_tells_is_in_its_json_and_has_a_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = MoreToSay(RESULT.rows, RESULT.scenes, worst=[{"scene": "home-1000", "acc": 0.5, "areas": [{}]}])
+    monkeypatch.setattr(evaluating, "_experiment", lambda name: lambda options: result)
+
+    answer = json.loads(CliRunner().invoke(app, ["eval", "regions", "--json"]).stdout)
+    assert (answer["worst"], answer["nothing"]) == (result.worst, [])
+    assert answer["rows"] == RESULT.rows
+
+    printed = CliRunner().invoke(app, ["eval", "regions"]).stdout
+    table = printed.split("regions, worst\n")[1].splitlines()
+    assert [line.split() for line in table[:2]] == [["scene", "acc"], ["home-1000", "0.500"]]
+    assert "nothing" not in printed
 
 
 def test_a_root_without_a_data_set_is_refused() -> None:

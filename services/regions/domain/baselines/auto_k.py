@@ -11,18 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.cluster.vq import ClusterError, kmeans2
 from scipy.spatial.distance import cdist
-from skimage.segmentation import watershed
 
 from ovip.scene.types import F64, I32, I64, Bools
+from services.regions.domain.cells import nearest_cells
+from services.regions.domain.flooding import clearance_of
 from services.regions.domain.partition import (
     UNKNOWN_FUNCTION,
     PartitionParams,
-    Relief,
     SeedGroup,
-    arrival,
-    clearance_of,
+    grow,
     place_markers,
-    snap,
 )
 
 
@@ -49,7 +47,7 @@ def auto_k_rooms(
 ) -> tuple[I32, Clustering]:
     """Regions of free space F `(R, C)` about clusters of object centres `(N, 2)`, (row, column) -> `(R, C)`, 0 = none.
 
-    params: the marker's radius, the relief and the grid. No regions where there are no objects or no free space.
+    params: the marker's radius, the growth and the grid. No regions where there are no objects or no free space.
     """
     params = params or PartitionParams()
     clustering = choose_k(np.asarray(cells, np.float64).reshape(-1, 2) * params.resolution, seed, k)
@@ -60,10 +58,8 @@ def auto_k_rooms(
         SeedGroup(UNKNOWN_FUNCTION, 1, tuple(np.flatnonzero(clustering.cluster == number).tolist()))
         for number in range(int(clustering.cluster.max()) + 1)
     )
-    markers = place_markers(whole, snap(cells, free), groups, params)
-    clearance = clearance_of(free, params.resolution)
-    relief = -clearance if params.relief is Relief.CLEARANCE else arrival(clearance, markers)
-    return watershed(relief, markers, mask=free).astype(np.int32), clustering
+    markers = place_markers(whole, nearest_cells(cells, free), groups, params)
+    return grow(clearance_of(free, params.resolution), whole, markers, groups, params), clustering
 
 
 def choose_k(points: F64, seed: int, params: AutoKParams | None = None) -> Clustering:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ovip.scene.types import I64
-from services.regions.domain.evidence import CELL, FloorEvidence, unpack_voxel
+from services.regions.domain.bricks import Window, unblocked
+from services.regions.domain.evidence import CELL, FloorEvidence
 from services.regions.domain.floors import Storey
 from services.regions.domain.free_space import FreeSpace
 
@@ -15,21 +16,22 @@ def filled_voxels(evidence: FloorEvidence, space: FreeSpace, low: float, high: f
 
     One voxel counts once however often it was hit, as a point of a downsampled cloud does.
     """
-    rows, columns = space.free.shape
-    index = unpack_voxel(evidence.hits.items()[0])
-    z = (index[:, 2] + 0.5) * CELL
-    row = index[:, 1] - round(space.origin[1] / CELL)
-    column = index[:, 0] - round(space.origin[0] / CELL)
-    inside = (z >= low) & (z < high) & (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
-    counts = np.zeros((rows, columns), np.int64)
-    np.add.at(counts, (row[inside], column[inside]), 1)
-    return counts
+    layers = evidence.hits.used_layers()
+    middle = (layers + 0.5) * CELL
+    layers = layers[(middle >= low) & (middle < high)]
+    if not len(layers) or not space.free.size:
+        return np.zeros(space.free.shape, np.int64)
+    x, y = (round(at / CELL) for at in space.origin)
+    window = Window((x, y), (x + space.free.shape[1], y + space.free.shape[0]))
+    whole = window.of_bricks()
+    filled = evidence.hits.filled([(int(layers[0]), int(layers[-1]) + 1)], whole)[0]
+    return unblocked(filled, whole)[window.inside(whole)].astype(np.int64)
 
 
 def ceiling_of(evidence: FloorEvidence, storey: Storey) -> float:
     """The storey's ceiling in world metres; the height of its highest surface where no ceiling was seen."""
     if storey.ceiling_z is not None:
         return storey.ceiling_z
-    z = (unpack_voxel(evidence.hits.items()[0])[:, 2] + 1) * CELL
+    z = (evidence.hits.used_layers() + 1) * CELL
     z = z[(z > storey.z) & (z <= storey.high)]
     return float(z.max()) if len(z) else storey.z

@@ -70,6 +70,16 @@ def test_a_cell_exactly_the_radius_away_is_traversable() -> None:
     assert traversable(grid_of("#..."), 0.75).tolist() == [[False, False, True, True]]
 
 
+@settings(max_examples=60, deadline=None)
+@given(OCCUPANCIES, st.floats(0.0, 9.0))
+def test_where_a_robot_may_stand_is_where_the_clearance_is_its_radius(
+    occupancy: np.ndarray, radius: float
+) -> None:
+    grid = FloorGrid(0, (-1.0, 3.0), 0.25, occupancy, np.zeros(occupancy.shape, np.uint16))
+    standing = (occupancy == FREE) & (clearance(grid) >= radius)
+    assert traversable(grid, radius).tolist() == standing.tolist()
+
+
 def test_footprints_close_the_cells_whose_centres_they_cover() -> None:
     grid = close_footprints(grid_of("....", "...."), np.array([[0.25, 0.0, 0.0, 0.75, 0.5, 1.0]]))
     assert (grid.occupancy == OCCUPIED).tolist() == [[True, True, False, False], [False] * 4]
@@ -143,6 +153,16 @@ def test_straightening_keeps_the_ends_and_the_corner() -> None:
     assert short[-1].tolist() == path[-1].tolist()
     assert len(short) < len(path)
     assert path_length(short) <= path_length(path)
+
+
+def test_a_long_straight_stretch_is_walked_to_the_farthest_point_in_sight() -> None:
+    rows = ["." * 60] * 4 + ["." * 20 + "#" * 20 + "." * 20] * 30
+    grid = grid_of(*rows)
+    path = shortest_path(grid, np.array([5.0, 15.0]), np.array([25.0, 15.0]), 0.0)
+    short = straighten(grid, path, 0.0)
+    assert len(short) == 4
+    assert short[1][0] < 10.0 < 20.0 < short[2][0]
+    assert path_length(short) < path_length(path)
 
 
 def test_the_length_of_no_path_is_zero() -> None:

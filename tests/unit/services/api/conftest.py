@@ -31,7 +31,7 @@ def home() -> Flat:
 
 @pytest.fixture
 def settings() -> Settings:
-    return Settings(api_port=0, api_key=None, api_regions_poll_s=0.02, api_heartbeat_s=0.2, _env_file=None)
+    return Settings(api_port=0, api_key=None, api_heartbeat_s=0.2, _env_file=None)
 
 
 @pytest.fixture
@@ -42,7 +42,7 @@ def stopping() -> asyncio.Event:
 @pytest.fixture
 def app(home: Flat, settings: Settings, stopping: asyncio.Event) -> FastAPI:
     made = _app(settings.api_key)
-    made.state.service = SceneService(backends_of(home), settings.api_regions_poll_s)
+    made.state.service = SceneService(backends_of(home))
     made.state.settings, made.state.stopping = settings, stopping
     return made
 
@@ -67,4 +67,4 @@ async def live(app: FastAPI, stopping: asyncio.Event) -> AsyncIterator[httpx.Asy
 def _app(api_key: str | None) -> FastAPI:
     """Making the routes takes a third of a second, so tests that differ in their state alone share them."""
     keyed = Settings(api_port=0, api_key=api_key, _env_file=None)
-    return create_app(SceneService(backends_of(flat()), 1.0), keyed, asyncio.Event())
+    return create_app(SceneService(backends_of(flat())), keyed, asyncio.Event())

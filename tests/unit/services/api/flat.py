@@ -29,17 +29,23 @@ from ovip.scene.answers import (
     TierStarted,
 )
 from ovip.scene.grid import FREE, OCCUPIED, FloorGrid
+from ovip.scene.navigation import Route, plan_route
+from ovip.scene.route_graph import RouteGraph, route_graph
 from ovip.scene.types import (
     F32,
+    F64,
     U8,
     Box2,
+    EdgeKind,
     Floor,
+    Frontier,
     Intrinsics,
     MapDelta,
     MapObject,
     Partition,
     Region,
     RegionEdge,
+    RegionEvent,
     SceneMap,
 )
 from services.api.ports import Backends
@@ -81,6 +87,9 @@ class Flat:
 
     version: int = 12
     revision: int = 3
+    events: tuple[RegionEvent, ...] = ()
+    frontiers: tuple[Frontier, ...] = ()
+    upstairs: bool = False
     objects: list[MapObject] = field(default_factory=list)
     regions: list[Region] = field(default_factory=list)
     records: list[FrameRecord] = field(default_factory=list)
@@ -122,6 +131,39 @@ class Flat:
         self._changed = asyncio.Event()
         return obj
 
+    def cut_anew(self, *events: RegionEvent) -> None:
+        """The next revision of the regions, as they are now, with what changed."""
+        self.revision += 1
+        self.events = events
+        self._changed.set()
+        self._changed = asyncio.Event()
+
+    def fail(self, error: OvipError) -> None:
+        """From now on every service answers with `error`, and streams end in it."""
+        self.broken = error
+        self._changed.set()
+        self._changed = asyncio.Event()
+
+    def partition(self) -> Partition:
+        """As regions would answer: revision 0 and nothing in it where there are no regions."""
+        if not self.regions:
+            return Partition(0, 0)
+        door = RegionEdge("r-kitchen", "r-living", 0.9, np.array([4.95, 4.05, 0.0]), EdgeKind.DOORWAY)
+        stairs = RegionEdge(
+            "r-living", "r-attic", 0.8, np.array([0.6, 3.2, 0.0]), EdgeKind.STAIRS, np.array([3.0, 3.2, 2.7])
+        )
+        ground, above = Floor(0, 0.0, 2.5, 47.1), Floor(1, 2.7, None, 20.0)
+        return Partition(
+            11,
+            self.revision,
+            (ground, above) if self.upstairs else (ground,),
+            (*self.regions, attic()) if self.upstairs else tuple(self.regions),
+            (door, stairs) if self.upstairs else (door,),
+            ("grouping: function table, no VLM configured",),
+            self.frontiers,
+            self.events,
+        )
+
     async def change(self) -> None:
         """Returns when the map grows."""
         await self._changed.wait()
@@ -159,6 +201,22 @@ def flat() -> Flat:
         records=[frame_record(i) for i in range(1, 13)],
         deltas=[MapDelta(v, f"robot.walk.{v}", updated=("o-001",)) for v in range(1, 13)],
     )
+
+
+def attic() -> Region:
+    """The one region of the floor above, where there is one."""
+    ring = np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [0.0, 4.0]])
+    middle = np.array([2.5, 2.0, 2.7])
+    return Region("r-attic", 1, "storage", "storage", 20.0, middle, (ring,), (), (), (), ("robot.walk.2",))
+
+
+def attic_grid() -> FloorGrid:
+    """5 m by 4 m of free floor with a wall around."""
+    occupancy = np.full((84, 104), OCCUPIED, np.uint8)
+    labels = np.zeros(occupancy.shape, np.uint16)
+    occupancy[2:-2, 2:-2] = FREE
+    labels[2:-2, 2:-2] = 1
+    return FloorGrid(1, (-0.1, -0.1), 0.05, occupancy, labels, ("r-attic",), 3)
 
 
 def thing(
@@ -344,24 +402,35 @@ class _Regions:
 
     async def get_partition(self, scene: str) -> Partition:
         self._state.check(scene)
-        if not self._state.regions:
-            return Partition(0, 0)
-        door = RegionEdge("r-kitchen", "r-living", 0.9, np.array([4.95, 4.05, 0.0]))
-        fallbacks = ("grouping: function table, no VLM configured",)
-        return Partition(
-            11,
-            self._state.revision,
-            (Floor(0, 0.0, 2.5, 47.1),),
-            tuple(self._state.regions),
-            (door,),
-            fallbacks,
-        )
+        return self._state.partition()
+
+    async def watch(self, scene: str, after_revision: int = 0) -> AsyncIterator[Partition]:
+        while True:
+            self._state.check(scene)
+            changed = asyncio.create_task(self._state.change())
+            try:
+                if self._state.revision > after_revision and self._state.regions:
+                    after_revision = self._state.revision
+                    yield self._state.partition()
+                await changed
+            finally:
+                changed.cancel()
 
     async def get_floor_grid(self, scene: str, floor: int) -> FloorGrid:
         self._state.check(scene)
+        if floor == 1 and self._state.upstairs:
+            return attic_grid()
         if floor != 0:
             raise NotFound(f"floor {floor}: expected one of 0")
         return grid()
+
+    async def plan_route(self, scene: str, start: F64, goal: F64, robot_radius: float = 0.0) -> Route:
+        self._state.check(scene)
+        return plan_route(self._state.partition(), {0: grid()}, start, goal, robot_radius or 0.25)
+
+    async def get_route_graph(self, scene: str, robot_radius: float = 0.0) -> RouteGraph:
+        self._state.check(scene)
+        return route_graph(self._state.partition(), {0: grid()}, robot_radius or 0.25)
 
 
 class _Retrieval:

@@ -7,6 +7,7 @@ import io
 import re
 import shutil
 from collections.abc import AsyncIterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,9 @@ from fastapi import FastAPI
 from PIL import Image
 
 from ovip.errors import InvalidInput
+from ovip.scene.types import Frontier, RegionEvent, RegionEventKind
 from services.api.config import Settings
+from services.api.domain.palette import TINT, region_colors
 from services.api.server.listening import listening
 from tests.unit.services.api.flat import Flat
 
@@ -184,6 +187,63 @@ async def test_a_click_on_the_plan_selects_and_a_hover_describes(page: Any) -> N
     assert "refrigerator" in await page.text_content(f"{at('object-item')}[aria-current='true']")
 
 
+async def test_regions_are_listed_with_their_ways_and_marked_on_the_plan(page: Any, home: Flat) -> None:
+    home.upstairs = True
+    home.frontiers = (Frontier(0, "r-bath", np.array([8.0, 1.0, 0.0]), 1.2),)
+    await opened(page)
+    for mark in ("plan-doorway", "plan-stairs", "plan-frontier"):
+        assert await page.locator(at(mark)).count() == 1
+    written = await page.locator(f"{at('plan-svg')} text").all_text_contents()
+    assert {"0.9 m", "up to floor 1", "unexplored"} <= set(written)
+    await page.click(at("tab-regions"))
+    kitchen = page.locator(f"{at('region-item')}[data-id='r-kitchen']")
+    await expect(kitchen).to_contain_text("kitchen 7 objects · floor 0doorway 0.9 m to living room9.0 m²")
+    await kitchen.hover()
+    await expect(page.locator(f"{at('plan-region')}[data-id='r-kitchen']")).to_have_attribute(
+        "data-pointed", ""
+    )
+    await page.click(f"{at('region-item')}[data-id='r-attic']")
+    await expect(page.locator(at("plan-region"))).to_have_count(1)
+    await expect(page.locator(at("floor-picker"))).to_have_value("1")
+    await expect(page.locator(f"{at('plan-svg')} text", has_text="down to floor 0")).to_have_count(1)
+
+
+async def test_a_region_pointed_at_on_the_plan_is_described_and_a_click_selects_it(page: Any) -> None:
+    await opened(page)
+    bath = page.locator(f"{at('plan-region')}[data-id='r-bath']")
+    box = await bath.bounding_box()
+    middle = (box["x"] + 0.3 * box["width"], box["y"] + 0.35 * box["height"])
+    await page.mouse.move(*middle)
+    assert "bathroom8.7 m² · 3 objects" in await page.text_content(at("plan-tip"))
+    await page.mouse.click(*middle)
+    await expect(page.locator(f"{at('region-item')}[aria-current='true']")).to_contain_text("bathroom")
+    assert await page.is_visible(at("region-list"))
+
+
+async def test_a_new_partition_redraws_the_plan_and_says_what_changed(page: Any, home: Flat) -> None:
+    await opened(page)
+    assert not await page.is_visible(at("region-changes"))
+    gone = home.regions.pop()
+    home.regions[1] = replace(home.regions[1], function="pantry", display_name="pantry")
+    home.cut_anew(
+        RegionEvent(RegionEventKind.VANISHED, gone.region_id, 0, gone.display_name, "r-living"),
+        RegionEvent(RegionEventKind.RETYPED, "r-kitchen", 0, "pantry"),
+    )
+    await expect(page.locator(at("region-changes"))).to_have_text(
+        "bathroom is gone (now living room); r-kitchen is now called pantry"
+    )
+    await expect(page.locator(at("plan-region"))).to_have_count(2)
+    await expect(page.locator(at("region-count"))).to_have_text("2")
+
+
+async def test_regions_have_the_colours_of_the_picture(page: Any, home: Flat) -> None:
+    await opened(page)
+    bath = page.locator(f"{at('plan-region')}[data-id='r-bath']")
+    assert await bath.get_attribute("fill") == region_colors(home.regions)["r-bath"]
+    opacity = await bath.evaluate("node => getComputedStyle(node).fillOpacity")
+    assert float(opacity) == pytest.approx(TINT)
+
+
 async def test_what_goes_wrong_is_said_in_words(page: Any, home: Flat) -> None:
     await opened(page)
     await ask(page, "refuse")
@@ -214,7 +274,7 @@ async def test_dark_is_dark(page: Any) -> None:
 class TestWithAKey:
     @pytest.fixture
     def settings(self) -> Settings:
-        return Settings(api_port=0, api_key="secret", api_regions_poll_s=0.05, _env_file=None)
+        return Settings(api_port=0, api_key="secret", _env_file=None)
 
     async def test_the_link_with_the_key_opens_and_the_key_leaves_the_address(self, page: Any) -> None:
         await opened(page, "/?key=secret&scene=flat")

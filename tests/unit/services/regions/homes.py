@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from ovip.codec import encode_detection_batch
+from ovip.codec import encode_delta, encode_detection_batch
 from ovip.errors import NotConfigured, OvipError
 from ovip.scene.answers import VlmReply
-from ovip.scene.types import F32, Box2, DetectionBatch, Intrinsics, MapObject, SceneMap
+from ovip.scene.types import F32, Box2, DetectionBatch, Intrinsics, MapDelta, MapObject, SceneMap
 from ovip.store import Append, Store
 from services.regions.domain.assembly import PlacedObjects
 from services.regions.ports import Grouping
@@ -51,29 +52,30 @@ class Home:
 
     async def gains(self, label: str, x: float, y: float, z: float = 0.5) -> None:
         """An object of the mapper."""
+        name = f"o{len(self.objects)}"
+        self.objects.append(mapped(name, label, x, y, z))
+        await self.tells(created=(name,))
+
+    async def loses(self, object_id: str) -> None:
+        """The mapper gives an object up."""
+        self.objects = [o for o in self.objects if o.object_id != object_id]
+        await self.tells(removed=(object_id,))
+
+    async def moves(self, object_id: str, x: float, y: float, label: str = "") -> None:
+        """The mapper finds an object elsewhere, or another name for it."""
+        self.objects = [
+            replace(o, centroid=np.array([x, y, 0.5]), label=label or o.label)
+            if o.object_id == object_id
+            else o
+            for o in self.objects
+        ]
+        await self.tells(updated=(object_id,))
+
+    async def tells(self, **changed: tuple[str, ...]) -> None:
+        """The next version of the map, with what it changed."""
         self.version += 1
-        centre = np.array([x, y, z])
-        self.objects.append(
-            MapObject(
-                object_id=f"o{len(self.objects)}",
-                label=label,
-                label_counts={label: 3},
-                centroid=centre,
-                box=np.concatenate([centre - 0.1, centre + 0.1]),
-                feature=np.ones(4, np.float32) / 2,
-                view_weight=1.0,
-                observations=3,
-                frames=3,
-                first_seen_ns=0,
-                last_seen_ns=0,
-                voxels=9,
-                mean_color=np.zeros(3),
-                best_frame_id="f0",
-                best_box2=Box2(0, 0, 1, 1),
-                version=self.version,
-            )
-        )
-        await self.logs("map", {"version": self.version, "frame_id": "f0", "delta": b"", "state_hash": ""})
+        delta = encode_delta(MapDelta(self.version, "f0", **changed))  # type: ignore[arg-type]
+        await self.logs("map", {"version": self.version, "frame_id": "f0", "kind": "frame", "delta": delta})
 
     async def logs(self, stream: str, fields: dict[str, bytes | str | int]) -> None:
         """An entry of another stage's log, in a step of that stage."""
@@ -82,6 +84,42 @@ class Home:
         assert lease is not None
         step = await self._store.length(SCENE, stream) + 1
         await self._store.commit(lease, f"{step}-0", [Append(stream, fields)])
+
+
+def mapped(name: str, label: str, x: float, y: float, z: float = 0.5) -> MapObject:
+    """An object as the mapper has it."""
+    centre = np.array([x, y, z])
+    return MapObject(
+        object_id=name,
+        label=label,
+        label_counts={label: 3},
+        centroid=centre,
+        box=np.concatenate([centre - 0.1, centre + 0.1]),
+        feature=np.ones(4, np.float32) / 2,
+        view_weight=1.0,
+        observations=3,
+        frames=3,
+        first_seen_ns=0,
+        last_seen_ns=0,
+        voxels=9,
+        mean_color=np.zeros(3),
+        best_frame_id="f0",
+        best_box2=Box2(0, 0, 1, 1),
+        version=1,
+    )
+
+
+class PlainMap:
+    """A map that is what it is told to be."""
+
+    def __init__(self, *objects: MapObject) -> None:
+        self.objects = objects
+        self.version = 1
+        self.asked = 0
+
+    async def get_map(self, scene: str) -> SceneMap:
+        self.asked += 1
+        return SceneMap(scene, self.version, self.objects, "hash", 0, 0, "0-0")
 
 
 def left_room() -> F32:
@@ -119,7 +157,13 @@ class ScriptedVlm:
         self.prompts: list[str] = []
 
     async def ask(
-        self, purpose: str, prompt: str, *, schema: object = None, deadline_s: float = 0.0
+        self,
+        purpose: str,
+        prompt: str,
+        *,
+        schema: object = None,
+        max_output_tokens: int = 0,
+        deadline_s: float = 0.0,
     ) -> VlmReply:
         assert purpose == "group"
         assert schema

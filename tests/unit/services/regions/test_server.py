@@ -12,7 +12,7 @@ from ovip.errors import NotFound
 from ovip.store import Store
 from services.regions.__main__ import serve
 from services.regions.config import Settings
-from services.regions.domain.partition import Relief
+from services.regions.domain.partition import Growth
 from services.regions.shelf import STAGE, Answered, Shelf
 from tests.unit.services.regions.rooms import two_rooms
 from tests.unit.services.regions.test_service import cut_of
@@ -77,11 +77,11 @@ async def test_a_watcher_gets_the_newest_partition_and_then_each_new_one(
             await anext(client.watch("attic"))
 
 
-def test_the_papers_numbers_are_the_defaults_and_the_relief_is_ours(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_numbers_of_the_partition_come_from_the_settings(monkeypatch: pytest.MonkeyPatch) -> None:
     params = Settings(_env_file=None).partition
-    assert (params.dilation, params.marker_radius, params.eps, params.resolution) == (6, 0.30, 2.0, 0.05)
-    assert params.relief is Relief.ARRIVAL
-    monkeypatch.setenv("OVIP_REGIONS_RELIEF", "clearance")
+    assert params.growth is Growth.DISTANCE
+    monkeypatch.setenv("OVIP_REGIONS_GROWTH", "clearance")
+    monkeypatch.setenv("OVIP_REGIONS_DILATION", "6")
     monkeypatch.setenv("OVIP_REGIONS_PORT", "0")
-    assert Settings(_env_file=None).partition.relief is Relief.CLEARANCE
+    assert Settings(_env_file=None).partition == replace(params, growth=Growth.CLEARANCE, dilation=6)
     assert Settings(_env_file=None).port == 0

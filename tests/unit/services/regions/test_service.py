@@ -17,7 +17,7 @@ SCENE = "home"
 
 
 def cut_of(evidence: FloorEvidence) -> Cut:
-    return assemble(survey(evidence), PlacedObjects.none(), (), evidence.cameras, Cut.none())
+    return assemble(survey(evidence), PlacedObjects.none(), (), evidence, Cut.none())
 
 
 async def test_before_the_first_partition_there_is_an_empty_one_and_no_grid(store: Store) -> None:

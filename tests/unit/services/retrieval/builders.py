@@ -10,6 +10,7 @@ import numpy as np
 
 from ovip.errors import InvalidInput, NotConfigured, NotFound
 from ovip.scene.answers import FrameRecord, PerceptionStatus, VlmReply
+from ovip.scene.building import Building
 from ovip.scene.grid import FREE, OCCUPIED, UNKNOWN, FloorGrid
 from ovip.scene.types import (
     F32,
@@ -134,6 +135,11 @@ def region(
 def partition(*regions: Region) -> Partition:
     """One floor at height 0 with these regions."""
     return Partition(map_version=7, revision=3, floors=(Floor(0, 0.0, 2.5, 20.0),), regions=regions)
+
+
+def standing_in(grid: FloorGrid, radius: float = 0.25, z: float = 0.0) -> Building:
+    """A building of one storey at height `z`, for a robot of `radius` metres."""
+    return Building(Partition(0, 0, (Floor(grid.floor, z, None, 1.0),)), {grid.floor: grid}, radius)
 
 
 def pose_at(x: float, y: float, yaw: float, z: float = 1.2) -> F64:

@@ -20,7 +20,8 @@ from ovip.scene.answers import (
     TierStarted,
     Viewpoint,
 )
-from ovip.scene.types import F64
+from ovip.scene.navigation import region_at
+from ovip.scene.types import F64, EdgeKind, Floor, Frontier, RegionEdge
 from ovip.store import Store
 from services.retrieval.adapters.crops import OpenCvCrops
 from services.retrieval.adapters.searches import StoredSearches
@@ -698,3 +699,117 @@ async def test_a_budget_that_just_covers_the_plan_ends_in_absent(home: Store) ->
     other = kettle_world()
     _, events = await drive(build(home, other), exact, Robot(other).look)
     assert events[-1].outcome is Outcome.ABSENT
+
+
+# Storeys and what was never seen
+
+UPSTAIRS = replace(GRID, floor=1, region_ids=("r3", "r4"))
+TWO_STOREYS = replace(
+    ROOMS,
+    floors=(*ROOMS.floors, Floor(1, 3.0, None, 20.0)),
+    regions=(
+        *ROOMS.regions,
+        region("r3", "office", (1.75, 1.75), ["lamp"], floor=1),
+        region("r4", "bathroom", (4.75, 1.75), floor=1),
+    ),
+    edges=(
+        RegionEdge("r2", "r4", 0.9, np.array([5.6, 1.0, 0.0]), EdgeKind.STAIRS, np.array([5.6, 2.6, 3.0])),
+    ),
+)
+LAMP = mapped("lamp", "lamp", box_at(1.5, 2.0, 3.8))
+BEYOND = Frontier(0, "r2", np.array([6.0, 1.5, 0.0]), 1.2)
+
+
+def two_storeys(**changes: Any) -> World:
+    return kitchen(
+        **{
+            "objects": [*KITCHEN, LAMP],
+            "regions": TWO_STOREYS,
+            "grids": {0: GRID, 1: UPSTAIRS},
+            **changes,
+        }
+    )
+
+
+async def test_the_way_to_a_lamp_upstairs_leads_over_the_stairs(home: Store) -> None:
+    answer = await ask(build(home, two_storeys()), "lamp", robot_pose=pose_at(1.0, 1.0, 0.0))
+    assert answer.outcome is Outcome.FOUND
+    assert answer.goal is not None
+    assert answer.goal.position[2] == 3.0
+    assert [5.6, 1.0, 0.0] in answer.path.tolist()
+    assert [5.6, 2.6, 3.0] in answer.path.tolist()
+    np.testing.assert_allclose(answer.path[-1], answer.goal.position)
+
+
+async def test_without_stairs_a_lamp_upstairs_is_found_and_the_missing_way_is_said(home: Store) -> None:
+    world = two_storeys(regions=replace(TWO_STOREYS, edges=()))
+    answer = await ask(build(home, world), "lamp", robot_pose=pose_at(1.0, 1.0, 0.0))
+    assert answer.outcome is Outcome.FOUND
+    assert answer.object is not None
+    assert not len(answer.path)
+    assert "no stairs that were seen lead from floor 0 to floor 1" in answer.object.why
+
+
+async def test_a_robot_searches_both_storeys_and_walks_the_stairs_between(home: Store) -> None:
+    world = two_storeys(objects=[TABLE])
+    robot = Robot(world)
+    _, events = await drive(build(home, world), START, robot.look)
+    answer = events[-1]
+    assert answer.outcome is Outcome.ABSENT
+    assert answer.coverage.complete
+    assert {v.position[2] for v in robot.viewpoints} == {0.0, 3.0}
+    climbs = [v for v in robot.viewpoints if len(set(v.path[:, 2])) > 1]
+    assert len(climbs) == 1
+    assert [5.6, 2.6, 3.0] in climbs[0].path.tolist()
+    assert answer.needs == ""
+
+
+async def test_a_storey_out_of_reach_is_said_with_the_reason(home: Store) -> None:
+    world = two_storeys(objects=[TABLE], regions=replace(TWO_STOREYS, edges=()))
+    robot = Robot(world)
+    _, events = await drive(build(home, world), START, robot.look)
+    answer = events[-1]
+    assert {v.position[2] for v in robot.viewpoints} == {0.0}
+    assert not answer.coverage.complete
+    assert "no stairs that were seen lead from floor 0 to floor 1" in answer.tiers[-1].why
+
+
+async def test_every_viewpoint_names_the_region_it_lies_in(home: Store) -> None:
+    world = two_storeys(objects=[TABLE])
+    robot = Robot(world)
+    await drive(build(home, world), START, robot.look)
+    grids = {0: GRID, 1: UPSTAIRS}
+    for viewpoint in robot.viewpoints:
+        assert viewpoint.region_id == region_at(TWO_STOREYS, grids, viewpoint.position)
+
+
+async def test_an_absence_with_unexplored_floor_in_reach_says_so(home: Store) -> None:
+    world = kettle_world(regions=replace(ROOMS, frontiers=(BEYOND,)))
+    _, events = await drive(build(home, world), START, Robot(world).look)
+    answer = events[-1]
+    assert answer.outcome is Outcome.ABSENT
+    assert answer.tiers[-1].why.endswith("; unexplored floor begins beyond the bedroom (1.2 m wide)")
+    assert answer.needs == "a look at what nobody has seen: beyond the bedroom (1.2 m wide)"
+
+
+async def test_unexplored_floor_out_of_reach_or_elsewhere_than_asked_is_left_out(home: Store) -> None:
+    away = replace(BEYOND, floor=1, position=np.array([6.0, 1.5, 3.0]))
+    world = kettle_world(regions=replace(ROOMS, frontiers=(away,)))
+    _, events = await drive(build(home, world), START, Robot(world).look)
+    assert (events[-1].outcome, events[-1].needs) == (Outcome.ABSENT, "")
+    world = kettle_world(regions=replace(ROOMS, frontiers=(BEYOND,)))
+    in_kitchen = replace(START, region_hint="kitchen")
+    _, events = await drive(build(home, world), in_kitchen, Robot(world).look)
+    assert (events[-1].outcome, events[-1].needs) == (Outcome.ABSENT, "")
+
+
+async def test_floor_explored_while_searching_is_no_longer_unexplored(home: Store) -> None:
+    world = kettle_world(regions=replace(ROOMS, frontiers=(BEYOND, replace(BEYOND, width=0.7))))
+    robot = Robot(world)
+
+    def exploring(viewpoint: Viewpoint) -> Observation:
+        world.partition = replace(ROOMS, revision=4, frontiers=(replace(BEYOND, region_id="r1", width=0.7),))
+        return robot.look(viewpoint)
+
+    _, events = await drive(build(home, world), START, exploring)
+    assert events[-1].needs == "a look at what nobody has seen: beyond the kitchen (0.7 m wide)"

@@ -2,85 +2,37 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from lab.evaluation.regions.floors import FloorPlace, RegionTruth, Target, rooms_of
-from lab.evaluation.regions.methods import METHODS, service_params, true_functions
+from lab.evaluation.regions.diagnosis import diagnose
+from lab.evaluation.regions.expectations import BASELINES, OURS
+from lab.evaluation.regions.floors import FloorPlace, rooms_of
+from lab.evaluation.regions.methods import METHODS, assembled, ours_but, service_params, true_functions
 from lab.evaluation.regions.plans import storey_plans
 from lab.evaluation.regions.rows import Ground, holders, predicted_rooms, score_regions, seen_share, units_of
-from lab.simulation.home import Area, Storey
-from ovip.scene.types import F32, F64
+from services.regions.config import Settings
 from services.regions.domain.assembly import PlacedObjects
 from services.regions.domain.evidence import FloorEvidence
-from services.regions.domain.partition import Relief
+from services.regions.domain.partition import PartitionParams
 from services.regions.domain.survey import survey
-from tests.unit.services.regions.rooms import plane, room, seen, two_rooms, without
+from tests.unit.lab.evaluation.regions.two_room_homes import (
+    FUNCTIONS_OF_THINGS,
+    area,
+    ground,
+    one_storey,
+    placed,
+    truth,
+    two_storeys,
+)
+from tests.unit.services.regions.rooms import two_rooms
 
-THINGS = (("bed", 1.0, 3.0), ("nightstand", 2.5, 3.5), ("stove", 7.5, 3.5), ("fridge", 7.5, 1.9))
-
-
-def square(x0: float, x1: float) -> F64:
-    return np.array([[x0, 0.0], [x1, 0.0], [x1, 4.05], [x0, 4.05]])
-
-
-def area(number: int, floor: int, function: str, x0: float, x1: float) -> Area:
-    return Area(number, floor, function, function, square(x0, x1), number)
-
-
-def truth(storeys: tuple[float, ...] = (0.0,)) -> RegionTruth:
-    areas = tuple(
-        area(10 * floor + k, floor, function, *x)
-        for floor in range(len(storeys))
-        for k, (function, x) in enumerate((("bedroom", (0.0, 4.05)), ("kitchen", (4.2, 8.25))), start=1)
-    )
-    targets = tuple(
-        Target(label, np.array([x, y, z + 0.5]), floor, "bedroom" if x < 4 else "kitchen")
-        for floor, z in enumerate(storeys)
-        for label, x, y in THINGS
-    )
-    floors = tuple(Storey(k, z, z + 2.5) for k, z in enumerate(storeys))
-    return RegionTruth("two rooms", "walled", floors, areas, areas, targets, np.zeros((0, 6)))
+COMPARED = (OURS, "KGSW oracle functions", "KGSW to the letter", *BASELINES)
 
 
-def placed(told: RegionTruth) -> PlacedObjects:
-    return PlacedObjects(
-        tuple(f"o{k}" for k in range(len(told.targets))),
-        tuple(target.label for target in told.targets),
-        np.array([target.centre for target in told.targets]).reshape(-1, 3),
-    )
-
-
-def ground(evidence: FloorEvidence, told: RegionTruth, queries: int = 0) -> Ground:
-    place = FloorPlace(told, evidence, placed(told))
-    return Ground.of(place, survey(evidence), queries)
-
-
-def one_storey() -> Ground:
-    return ground(two_rooms(), truth())
-
-
-def two_storeys() -> Ground:
-    evidence = seen(
-        *[
-            (cloud + np.array([0, 0, z], np.float32), (x, 2.0, z + 1.2))
-            for z in (0.0, 3.0)
-            for cloud, x in _views()
-        ]
-    )
-    return ground(evidence, truth((0.0, 3.0)))
-
-
-def _views() -> list[tuple[F32, float]]:
-    sill = plane((4.025, 4.225), (1.6, 2.5), (0.0, 0.0))
-    left = without(room((0.025, 4.025), (0.025, 4.025)), (4.0, 4.1), (1.6, 2.5), (-0.1, 2.0))
-    right = without(room((4.225, 8.225), (0.025, 4.025)), (4.2, 4.3), (1.6, 2.5), (-0.1, 2.0))
-    return [(np.concatenate([left, sill]), 2.0), (np.concatenate([right, sill]), 6.0)]
-
-
-@pytest.mark.parametrize("name", list(METHODS))
+@pytest.mark.parametrize("name", COMPARED)
 def test_every_method_finds_two_walled_rooms(name: str) -> None:
     here = one_storey()
     cut = METHODS[name](here.place, here.surveyed)
@@ -96,7 +48,7 @@ def test_every_method_finds_two_walled_rooms(name: str) -> None:
     assert row["viewpoints"] == pytest.approx(0.5, abs=0.2)
 
 
-@pytest.mark.parametrize("name", list(METHODS))
+@pytest.mark.parametrize("name", COMPARED)
 def test_two_storeys_are_each_compared_with_their_own(name: str) -> None:
     here = two_storeys()
     cut = METHODS[name](here.place, here.surveyed)
@@ -138,7 +90,7 @@ def test_a_target_is_held_by_the_region_under_its_centre_on_its_own_storey() -> 
 
 def test_true_functions_are_those_of_the_areas_and_near_a_wall_of_the_nearest() -> None:
     here = one_storey()
-    assert true_functions(here.place, here.surveyed) == ("bedroom", "bedroom", "kitchen", "kitchen")
+    assert true_functions(here.place, here.surveyed) == FUNCTIONS_OF_THINGS
     assert here.place.truth.function_at(0, np.array([4.16, 2.0])) == "kitchen"
     assert here.place.truth.function_at(0, np.array([-3.0, 2.0])) == "bedroom"
     assert here.place.truth.function_at(5, np.array([1.0, 2.0])) == ""
@@ -176,26 +128,44 @@ def test_areas_become_cells_of_the_worlds_lattice() -> None:
 
 
 def test_kgsw_runs_with_the_services_own_numbers() -> None:
-    params = service_params()
-    assert (params.dilation, params.marker_radius, params.eps) == (6, 0.30, 2.0)
-    assert params.relief is Relief.ARRIVAL
+    assert service_params() == Settings.model_construct().partition
+    assert service_params() != PartitionParams()
 
 
-def test_plans_show_the_truth_and_the_methods_of_each_storey(tmp_path: Path) -> None:
+def test_the_papers_own_settings_leave_out_what_ours_adds() -> None:
+    here = one_storey()
+    letter = METHODS["KGSW to the letter"](here.place, here.surveyed)
+    (own,) = assembled(here.place, here.surveyed, FUNCTIONS_OF_THINGS, PartitionParams())
+    assert np.array_equal(letter[0].labels, own.labels)
+    assert letter[0].functions == own.functions == ("bedroom", "kitchen")
+
+
+def test_ours_with_one_number_of_the_papers_differs_in_that_alone() -> None:
+    here = one_storey()
+    (plain,) = METHODS["KGSW"](here.place, here.surveyed)
+    (same,) = ours_but(eps=service_params().eps)(here.place, here.surveyed)
+    assert np.array_equal(plain.labels, same.labels)
+    (lone,) = ours_but(votes=9)(here.place, here.surveyed)
+    (directly,) = assembled(
+        here.place, here.surveyed, FUNCTIONS_OF_THINGS, replace(service_params(), votes=9)
+    )
+    assert np.array_equal(lone.labels, directly.labels)
+
+
+def test_plans_show_the_truth_and_the_methods_of_each_storey() -> None:
     here = two_storeys()
     cuts = {name: method(here.place, here.surveyed) for name, method in METHODS.items()}
     rows = {name: score_regions(here, cut, cuts["SysNav"]) for name, cut in cuts.items()}
-    lower, upper = storey_plans(here, cuts, rows)
+    lower, upper = storey_plans(here, cuts, rows, diagnose(here, cuts["KGSW"]))
     assert upper.title == "two rooms (walled), storey 1"
     assert [plan.title for plan in lower.plans] == [
         "truth",
         "KGSW",
-        "KGSW -D relief",
+        "KGSW to the letter",
         "HOV-SG",
         "SysNav",
         "auto-K",
     ]
     assert lower.plans[0].names == ("bedroom", "kitchen")
+    assert lower.plans[0].under == ("found", "found")
     assert len(lower.backdrop.dots) == 4
-    pytest.importorskip("matplotlib")
-    assert lower.draw(tmp_path / "plan.png").read_bytes()[:4] == b"\x89PNG"

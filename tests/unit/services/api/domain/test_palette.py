@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ovip.scene.types import Region
-from services.api.domain.palette import UNKNOWN_COLOR, region_colors, rgb
+from services.api.domain.palette import UNKNOWN_COLOR, function_color, region_colors, rgb
+from services.regions.domain.function_table import FUNCTION_WORDS
 
 
 def region(region_id: str, function: str) -> Region:
@@ -16,6 +17,25 @@ def test_a_function_has_the_same_colour_in_every_scene() -> None:
     alone = region_colors([region("a", "kitchen")])
     among = region_colors([region("x", "bedroom"), region("y", "kitchen")])
     assert alone["a"] == among["y"]
+
+
+def test_every_function_that_the_table_knows_has_a_colour_of_its_own() -> None:
+    colors = {function: function_color(function) for function in FUNCTION_WORDS}
+    assert len(set(colors.values())) == len(FUNCTION_WORDS)
+    assert UNKNOWN_COLOR not in colors.values()
+
+
+def test_a_function_nobody_foresaw_has_always_the_same_colour_and_two_words_for_one_thing_one() -> None:
+    assert function_color("winter garden") == function_color("winter garden") != UNKNOWN_COLOR
+    assert function_color("dining room") == function_color("dining area")
+
+
+def test_a_second_region_has_a_shade_of_the_first_ones_colour() -> None:
+    first, second = (
+        rgb(color) for color in region_colors([region("r2", "kitchen"), region("r10", "kitchen")]).values()
+    )
+    assert first == rgb(function_color("kitchen"))
+    assert 10 < max(abs(a - b) for a, b in zip(first, second, strict=True)) < 70
 
 
 def test_regions_of_one_function_are_told_apart() -> None:

@@ -10,11 +10,19 @@ import pytest
 from fastapi import FastAPI
 
 from ovip.errors import Unavailable
+from ovip.scene.types import RegionEvent, RegionEventKind
 from services.api.server.listening import listening
 from tests.unit.services.api.flat import Flat
 from tests.unit.services.api.server.reading import Read, events_of
 
 EVENTS = "/v1/scenes/flat/events"
+APPEARED = {
+    "kind": "appeared",
+    "region_id": "r-bath",
+    "floor": 0,
+    "display_name": "bathroom",
+    "other": "r-living",
+}
 BOX = (1.0, 1.0, 0.0, 2.0, 2.0, 1.0)
 
 
@@ -33,7 +41,7 @@ async def test_the_stream_begins_with_the_regions_and_goes_on_with_live_deltas(
 ) -> None:
     async with live.stream("GET", EVENTS) as reply:
         events = events_of(reply)
-        assert await anext(events) == ("regions", {"revision": 3, "map_version": 11}, "")
+        assert await anext(events) == ("regions", {"revision": 3, "map_version": 11, "events": []}, "")
         grown = home.grow("lamp", BOX, "r-living")
         name, delta, event_id = await anext(events)
     assert (name, event_id) == ("map", "13")
@@ -59,8 +67,12 @@ async def test_a_new_partition_is_told_once(live: httpx.AsyncClient, home: Flat)
     async with live.stream("GET", EVENTS) as reply:
         events = events_of(reply)
         await anext(events)
-        home.revision = 4
-        assert (await anext(events))[1]["revision"] == 4
+        home.cut_anew(RegionEvent(RegionEventKind.APPEARED, "r-bath", 0, "bathroom", "r-living"))
+        assert await anext(events) == (
+            "regions",
+            {"revision": 4, "map_version": 11, "events": [APPEARED]},
+            "",
+        )
         await asyncio.sleep(0.1)
         home.grow("lamp", BOX, "r-living")
         assert (await anext(events))[0] == "map"
@@ -79,7 +91,7 @@ async def test_a_service_that_goes_away_ends_the_stream_in_a_problem(
     async with live.stream("GET", EVENTS) as reply:
         events = events_of(reply)
         await anext(events)
-        home.broken = Unavailable("regions: connection refused")
+        home.fail(Unavailable("regions: connection refused"))
         name, body, _ = await anext(events)
         assert (name, body["detail"]) == ("problem", "regions: connection refused")
         assert await anext(events, None) is None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import struct
+import zipfile
 from dataclasses import replace
 
 import httpx
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from services.api.server import models
 from tests.unit.services.api.flat import Flat
 
 BASE = "/v1/scenes/flat"
@@ -72,9 +74,92 @@ async def test_the_scene_graph_is_a_file(client: httpx.AsyncClient) -> None:
 
 
 async def test_the_floor_plan_is_a_picture_in_scale(client: httpx.AsyncClient) -> None:
-    reply = await client.get(f"{BASE}/floorplan.png", params={"scale": 50})
-    assert reply.headers["content-type"] == "image/png"
-    assert Image.open(io.BytesIO(reply.content)).size == (440, 340)
+    small, large = [
+        Image.open(io.BytesIO((await client.get(f"{BASE}/floorplan.png", params={"scale": scale})).content))
+        for scale in (50, 100)
+    ]
+    assert small.width == 50 * 9.4
+    assert large.width == 100 * 9.4
+
+
+async def test_one_floor_or_all_side_by_side_are_drawn(client: httpx.AsyncClient, home: Flat) -> None:
+    home.upstairs = True
+    widths = [
+        Image.open(
+            io.BytesIO((await client.get(f"{BASE}/floorplan.png", params={"scale": 50} | floor)).content)
+        ).width
+        for floor in ({"floor": 0}, {"floor": 1}, {})
+    ]
+    assert widths[2] == widths[0] + widths[1]
+
+
+async def test_maps_for_nav2_come_in_one_archive(client: httpx.AsyncClient, home: Flat) -> None:
+    home.upstairs = True
+    reply = await client.get(f"{BASE}/exports/nav2")
+    assert reply.headers["content-type"] == "application/zip"
+    assert reply.headers["content-disposition"] == 'attachment; filename="flat-r3-nav2.zip"'
+    with zipfile.ZipFile(io.BytesIO(reply.content)) as files:
+        assert len(files.namelist()) == 4
+    one = await client.get(f"{BASE}/exports/nav2?floor=1")
+    with zipfile.ZipFile(io.BytesIO(one.content)) as files:
+        assert files.namelist() == ["floor-1.pgm", "floor-1.yaml"]
+
+
+async def test_region_polygons_are_what_openapi_promises(client: httpx.AsyncClient) -> None:
+    body = (await client.get(f"{BASE}/exports/regions.json")).json()
+    assert models.RegionPolygons.model_validate(body).model_dump() == body
+    assert [feature["id"] for feature in body["features"]] == ["r-living", "r-kitchen", "r-bath"]
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "floorplan.png",
+        "exports/nav2",
+        "exports/regions.json",
+        "grid/0",
+        "grid/0/occupancy.png",
+        "grid/0/regions.png",
+    ],
+)
+async def test_a_file_that_is_unchanged_is_not_sent_again(client: httpx.AsyncClient, path: str) -> None:
+    tag = (await client.get(f"{BASE}/{path}")).headers["etag"]
+    again = await client.get(f"{BASE}/{path}", headers={"If-None-Match": tag})
+    assert (again.status_code, again.content, again.headers["etag"]) == (304, b"", tag)
+
+
+@pytest.mark.parametrize("path", ["floorplan.png", "exports/nav2", "exports/regions.json"])
+async def test_a_new_partition_is_sent_again(client: httpx.AsyncClient, home: Flat, path: str) -> None:
+    tag = (await client.get(f"{BASE}/{path}")).headers["etag"]
+    home.cut_anew()
+    assert (await client.get(f"{BASE}/{path}", headers={"If-None-Match": tag})).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "path", ["floorplan.png?floor=7", "exports/nav2?floor=7", "grid/7", "grid/7/regions.png"]
+)
+async def test_an_unknown_floor_is_told_which_there_are(
+    client: httpx.AsyncClient, home: Flat, path: str
+) -> None:
+    home.upstairs = True
+    reply = await client.get(f"{BASE}/{path}")
+    assert reply.status_code == 404
+    assert reply.json()["detail"] == "floor 7: no such floor in scene 'flat'; there are: 0, 1"
+
+
+@pytest.mark.parametrize("path", ["floorplan.png", "exports/nav2", "exports/regions.json", "grid/0"])
+async def test_before_the_first_partition_it_is_said_in_words(
+    client: httpx.AsyncClient, home: Flat, path: str
+) -> None:
+    home.regions = []
+    reply = await client.get(f"{BASE}/{path}")
+    assert reply.status_code == 404
+    assert "has no regions yet" in reply.json()["detail"]
+
+
+async def test_a_plan_too_large_to_draw_is_refused(client: httpx.AsyncClient, home: Flat) -> None:
+    home.upstairs = True
+    assert (await client.get(f"{BASE}/floorplan.png?scale=400")).status_code == 422
 
 
 async def test_the_grid_says_where_its_images_are_and_what_they_mean(client: httpx.AsyncClient) -> None:

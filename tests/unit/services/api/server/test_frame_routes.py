@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import httpx
 import pytest
 
@@ -54,3 +56,14 @@ async def test_an_image_comes_as_it_was_sent(client: httpx.AsyncClient) -> None:
     reply = await client.get(f"{BASE}/frames/robot.walk.3/rgb")
     assert reply.headers["content-type"] == "image/jpeg"
     assert reply.content[:2] == b"\xff\xd8"
+
+
+async def test_a_frame_says_which_region_it_was_taken_in(client: httpx.AsyncClient, home: Flat) -> None:
+    home.regions = [replace(home.regions[0], frame_ids=("robot.walk.2", "robot.walk.3")), home.regions[1]]
+    home.regions[1] = replace(home.regions[1], frame_ids=("robot.walk.7",))
+    frames = (await client.get(f"{BASE}/frames")).json()["frames"]
+    assert {f["frame_id"]: f["region_id"] for f in frames if f["region_id"]} == {
+        "robot.walk.2": "r-living",
+        "robot.walk.3": "r-living",
+        "robot.walk.7": "r-kitchen",
+    }

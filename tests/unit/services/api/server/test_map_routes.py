@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import httpx
+import numpy as np
 import pytest
 
+from ovip.scene.types import Frontier, RegionEvent, RegionEventKind
 from services.api.server import models
 from tests.unit.services.api.flat import Flat
 
@@ -110,3 +112,34 @@ async def test_a_scene_before_its_first_partition_has_no_regions_and_no_error(
     body = (await client.get(f"{BASE}/regions")).json()
     assert (body["regions"], body["regions_revision"]) == ([], 0)
     assert len((await client.get(f"{BASE}/graph")).json()["unplaced"]) == 17
+
+
+async def test_regions_carry_their_ways_frontiers_and_what_changed(
+    client: httpx.AsyncClient, home: Flat
+) -> None:
+    home.upstairs = True
+    home.frontiers = (
+        Frontier(0, "r-bath", np.array([8.0, 1.0, 0.0]), 1.2),
+        Frontier(0, "", np.array([4.0, 6.0, 0.0]), 0.7),
+    )
+    home.events = (RegionEvent(RegionEventKind.APPEARED, "r-bath", 0, "bathroom", "r-living"),)
+    regions = (await client.get(f"{BASE}/regions")).json()
+    graph = (await client.get(f"{BASE}/graph")).json()
+
+    door, stairs = regions["edges"]
+    assert (door["kind"], door["upper"]) == ("doorway", None)
+    assert (stairs["kind"], stairs["upper"]) == ("stairs", [3.0, 3.2, 2.7])
+    assert [frontier["region_id"] for frontier in regions["frontiers"]] == ["r-bath", None]
+    assert regions["events"][0]["kind"] == "appeared"
+    assert regions["regions"][3]["seen_by"] == ["robot.walk.2"]
+    for name in ("edges", "frontiers", "events"):
+        assert graph[name] == regions[name]
+    assert graph["floors"][1]["regions"][0]["seen_by"] == ["robot.walk.2"]
+
+
+async def test_frontiers_and_stairs_in_the_recordings_frame(client: httpx.AsyncClient, home: Flat) -> None:
+    home.upstairs = True
+    home.frontiers = (Frontier(0, "r-bath", np.array([8.0, 1.0, 0.0]), 1.2),)
+    body = (await client.get(f"{BASE}/regions?frame=source")).json()
+    assert body["frontiers"][0]["position"] == pytest.approx([8.0, -0.5, -1.0])
+    assert body["edges"][1]["upper"] == pytest.approx([3.0, 2.2, -3.2])

@@ -17,7 +17,7 @@ from tests.unit.services.api.flat import Flat
         ("/v1/scenes/attic/objects", 404, "not-found", "there are: flat"),
         ("/v1/scenes/flat/objects/o-999", 404, "not-found", "o-999"),
         ("/v1/scenes/flat/frames/robot.walk.99/rgb", 404, "not-found", "robot.walk.99"),
-        ("/v1/scenes/flat/grid/4", 404, "not-found", "expected one of 0"),
+        ("/v1/scenes/flat/grid/4", 404, "not-found", "there are: 0"),
         ("/v1/scenes/flat/searches/s-9", 404, "not-found", "s-9"),
         ("/v1/scenes/flat/objects?limit=0", 422, "invalid-input", "query.limit"),
         ("/v1/scenes/flat/objects?cursor=zzz", 422, "invalid-input", "earlier page of objects"),

@@ -31,7 +31,9 @@ class Encoder:
 
 def things(*labels: str) -> PlacedObjects:
     return PlacedObjects(
-        tuple(f"o{number}" for number in range(len(labels))), labels, np.zeros((len(labels), 3))
+        tuple(f"o{number}" for number in range(len(labels))),
+        labels,
+        np.arange(3.0 * len(labels)).reshape(-1, 3) * 9,
     )
 
 

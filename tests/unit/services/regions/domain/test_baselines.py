@@ -16,7 +16,7 @@ from services.regions.domain.baselines.sysnav import SysNavParams, sysnav_rooms
 from services.regions.domain.evidence import Counts, FloorEvidence
 from services.regions.domain.floors import Storey
 from services.regions.domain.free_space import FreeSpace
-from services.regions.domain.partition import PartitionParams, Relief
+from services.regions.domain.partition import Growth, PartitionParams
 from services.regions.domain.survey import SurveyedStorey, survey
 from tests.unit.services.regions.rooms import plane, room, seen, two_rooms
 
@@ -205,11 +205,11 @@ def test_too_few_points_are_one_cluster() -> None:
     assert choose_k(np.tile([[1.0, 2.0]], (9, 1)), 0).cluster.tolist() == [0] * 9
 
 
-@pytest.mark.parametrize("relief", list(Relief))
-def test_two_heaps_of_objects_share_an_open_room_between_them(relief: Relief) -> None:
+@pytest.mark.parametrize("growth", list(Growth))
+def test_two_heaps_of_objects_share_an_open_room_between_them(growth: Growth) -> None:
     free = np.ones((100, 200), bool)
     cells = heaps((2.5, 2.5), (2.5, 7.5)) / 0.05
-    labels, clustering = auto_k_rooms(free, cells, 0, PartitionParams(relief=relief))
+    labels, clustering = auto_k_rooms(free, cells, 0, PartitionParams(growth=growth))
     assert labels[50, 50] != labels[50, 150]
     assert (labels > 0).all()
     assert square_metres(labels) == pytest.approx([25.0, 25.0], abs=6.0)
