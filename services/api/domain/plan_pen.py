@@ -43,15 +43,10 @@ class Pen:
         self, cells: Bools, corner: tuple[float, float], resolution: float, ink: Ink, alpha: int
     ) -> None:
         """Cells `(R, C)`, row 0 with the smallest y and `corner` their lowest x, y, with their stairs smoothed away."""
-        rows, columns = cells.shape
-        x, y = self._pixels(np.array([[corner[0], corner[1] + rows * resolution]]))[0]
-        size = (
-            max(1, round(columns * resolution * self._scale)),
-            max(1, round(rows * resolution * self._scale)),
-        )
+        at, size = self._place(cells, corner, resolution)
         grey = Image.fromarray(cells[::-1].astype(np.uint8) * 255).resize(size, Image.Resampling.BILINEAR)
         mask = grey.point([alpha if value > 127 else 0 for value in range(256)])
-        self._picture.paste(ink, (round(x), round(y)), mask)
+        self._picture.paste(ink, at, mask)
 
     def hatch(
         self, cells: Bools, corner: tuple[float, float], resolution: float, ink: Ink, gap: float
@@ -59,12 +54,7 @@ class Pen:
         """Thin slanted lines over cells, `gap` pixels apart as shown."""
         if not cells.any():
             return
-        rows, columns = cells.shape
-        x, y = self._pixels(np.array([[corner[0], corner[1] + rows * resolution]]))[0]
-        size = (
-            max(1, round(columns * resolution * self._scale)),
-            max(1, round(rows * resolution * self._scale)),
-        )
+        at, size = self._place(cells, corner, resolution)
         lines = Image.new("L", size, 0)
         draw = ImageDraw.Draw(lines)
         step = max(2, round(gap * self._finer))
@@ -72,7 +62,7 @@ class Pen:
             draw.line([(start, size[1]), (start + size[1], 0)], fill=255, width=self._finer)
         inside = Image.fromarray(cells[::-1].astype(np.uint8) * 255).resize(size, Image.Resampling.NEAREST)
         lines.paste(0, mask=inside.point([255 - value for value in range(256)]))
-        self._picture.paste(ink, (round(x), round(y)), lines)
+        self._picture.paste(ink, at, lines)
 
     def line(self, points: F64, ink: Ink, width: float) -> None:
         """Straight pieces through `(N, 2)`; width: pixels as shown."""
@@ -109,6 +99,15 @@ class Pen:
             ),
             ink,
         )
+
+    def _place(
+        self, cells: Bools, corner: tuple[float, float], resolution: float
+    ) -> tuple[tuple[int, int], tuple[int, int]]:
+        """The upper left pixel of cells, and their width and height in pixels."""
+        rows, columns = cells.shape
+        x, y = self._pixels(np.array([[corner[0], corner[1] + rows * resolution]]))[0]
+        side = resolution * self._scale
+        return (round(x), round(y)), (max(1, round(columns * side)), max(1, round(rows * side)))
 
     def _pixels(self, points: F64) -> Sequence[tuple[float, float]]:
         x = (points[:, 0] - self._corner[0]) * self._scale

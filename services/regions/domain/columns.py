@@ -128,7 +128,9 @@ def _around(
         for bricks, layers in ((evidence.hits, hits), (evidence.passes, passes))
     ]
     corners = [corner for window in windows if window is not None for corner in (window.low, window.high)]
-    corners += [*map(tuple, stood.tolist()), *map(tuple, (stood + 1).tolist())]
+    corners += (
+        [tuple(stood.min(axis=0).tolist()), tuple((stood.max(axis=0) + 1).tolist())] if len(stood) else []
+    )
     if not corners:
         return None
     x, y = zip(*corners, strict=True)

@@ -126,11 +126,10 @@ def _levels_stood_on(hit: Hit, evidence: FloorEvidence, params: FloorParams) -> 
     cameras = np.array(list(evidence.cameras.values()))
     rise = cameras[:, 2] - np.array([[level.z] for level in levels]).reshape(-1, 1)
     near = (rise > params.camera_low) & (rise < params.camera_high)
-    under = [_under(surfaces, level.z, cameras) for level in levels]
-    over = np.logical_and(near, np.array(under, dtype=bool).reshape(near.shape))
-    over = over & (
-        np.cumsum(over[::-1], axis=0)[::-1] == 1
-    )  # a camera stands on the highest level that is under it
+    found = [_under(surfaces, level.z, cameras) for level in levels]
+    under: Bools = np.array(found, dtype=bool).reshape(near.shape) & near
+    highest = np.cumsum(under[::-1], axis=0)[::-1] == 1  # a camera stands on the highest level under it
+    over = under & highest
     return [
         _Stood(*row) for row in zip(levels, near.sum(axis=1).tolist(), over.sum(axis=1).tolist(), strict=True)
     ]
@@ -143,8 +142,8 @@ def _seen_from(side: Counts, other: Counts, level: Level) -> bool:
 def _under(surfaces: Surfaces, z: float, cameras: F64) -> Bools:
     """Whether there is a top at height `z` within a decimetre of the foot of each camera `(N, 3)` -> `(N,)`."""
     feet = np.floor(np.column_stack([cameras[:, :2], np.full(len(cameras), z)]) / CELL).astype(np.int64)
-    found: Bools = surfaces.at((feet[:, None] + _FEET).reshape(-1, 3)).reshape(-1, len(_FEET)).any(axis=1)
-    return found
+    found = surfaces.at((feet[:, None] + _FEET).reshape(-1, 3))
+    return np.asarray(found.reshape(-1, len(_FEET)).any(axis=1), dtype=bool)
 
 
 def _grouped(levels: Sequence[_Stood], ceilings: Sequence[Level], params: FloorParams) -> list[list[_Stood]]:
@@ -181,12 +180,12 @@ def _is_storey(stood: _Stood, floor: float, ceilings: Sequence[Level], params: F
 
 
 def _floor(group: Sequence[_Stood], params: FloorParams) -> float:
-    """The height of the lowest level, or of the largest stood over where that is a little higher."""
+    """The height of the lowest level, or of one a little higher that is stood over and larger."""
     largest, most = max(stood.level.area for stood in group), max(stood.over for stood in group)
     large = [stood for stood in group if stood.level.area >= params.level_share * largest]
     low = [stood for stood in large if stood.level.z <= large[0].level.z + params.sunken]
     over = [stood for stood in low if stood.over > params.level_share * most]
-    return max(over, key=lambda stood: stood.level.area, default=large[0]).level.z
+    return max([large[0], *over], key=lambda stood: stood.level.area).level.z
 
 
 def _lowest(evidence: FloorEvidence) -> float:

@@ -58,7 +58,7 @@ class FreeSpaceParams:
     min_lintel: float = 0.1
     overhead: Span = (2.10, 8.00)
     roof_share: float = 0.25
-    open_share: float = 0.02
+    open_share: float = 0.005
     min_outdoors: float = 0.5
     min_obstacle: int = 2
     driven: float = 0.35

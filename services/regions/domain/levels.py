@@ -47,7 +47,7 @@ class Level:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hit:
-    """The cubes that were hit. bricks: sorted keys `(N,)`. bits: `(N, 64)`, by column in a brick (y, x), a bit a layer."""
+    """The cubes that were hit, by brick: sorted keys `(N,)`, and bits `(N, 64)`, by column (y, x), a bit a layer."""
 
     bricks: I64
     bits: U8
@@ -71,11 +71,15 @@ class Surfaces:
         found: Bools = (self.bricks[row] == key) & (bit > 0)
         return found
 
-    def cubes(self) -> I64:
-        """Their indices `(M, 3)`."""
-        row, column = np.nonzero(self.bits)
-        within = np.stack([column % SIDE, column // SIDE, _PLACE[self.bits[row, column]]], axis=1)
-        index: I64 = unpack_voxel(self.bricks)[row] * SIDE + within
+    def between(self, low: int, high: int) -> I64:
+        """The indices `(M, 3)` of those from layer `low` to below `high`."""
+        base = unpack_voxel(self.bricks)[:, 2:] * SIDE + np.arange(SIDE)
+        wanted = np.packbits((base >= low) & (base < high), axis=1, bitorder="little")
+        some = np.flatnonzero(wanted)
+        bits = self.bits[some] & wanted[some]
+        row, column = np.nonzero(bits)
+        within = np.stack([column % SIDE, column // SIDE, _PLACE[bits[row, column]]], axis=1)
+        index: I64 = unpack_voxel(self.bricks[some])[row] * SIDE + within
         return index
 
     def by_layer(self) -> tuple[int, I64]:

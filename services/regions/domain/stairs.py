@@ -96,8 +96,7 @@ def _between(
 ) -> Iterator[Stairs]:
     lower, upper = surveyed[number], surveyed[number + 1]
     low, high = (int(np.floor(here.storey.z / CELL)) for here in (lower, upper))
-    cubes = tops(read_hit(evidence.hits, low + 2, high - 1)).cubes()
-    cubes = cubes[(cubes[:, 2] >= low + 2) & (cubes[:, 2] < high - 1)]
+    cubes = tops(read_hit(evidence.hits, low + 2, high - 1)).between(low + 2, high - 1)
     stood = _climbed(np.array(list(evidence.cameras.values())), lower.storey.z, upper.storey.z, params)
     for piece in _pieces(cubes, stood, low, high, params):
         for flight in _flights(piece, low, high, params):
