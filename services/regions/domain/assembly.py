@@ -1,7 +1,8 @@
 """From evidence, objects and their functions to the partition of a whole scene (KGSW, Algorithm 1 line 27).
 
 `survey` finds the storeys and their free space; between the two, somebody names the objects' functions;
-`assemble` cuts each storey into regions, back-projects objects and frames onto them, and joins the storeys.
+`assemble` cuts each storey into regions, gives them the stairs that lead up or down, back-projects objects and frames
+onto them, and joins the storeys.
 """
 
 from __future__ import annotations
@@ -101,6 +102,7 @@ def assemble(
         next_number = named.next_number
         floors.append(_FloorCut(number, here, cut.labels, named.ids, cut.functions))
     stairs = find_stairs(evidence, tuple(surveyed))
+    floors = [_with_stairs(floor, stairs) for floor in floors]
     edges = _stairs_edges(floors, stairs) + [edge for floor in floors for edge in _edges(floor)]
     floors = [_with_hallways(floor, edges) for floor in floors]
     regions = [
@@ -191,6 +193,20 @@ def _edges(floor: _FloorCut) -> list[RegionEdge]:
         )
         for opening in find_openings(floor.labels, floor.here.space.resolution)
     ]
+
+
+def _with_stairs(floor: _FloorCut, stairs: Sequence[Stairs]) -> _FloorCut:
+    """The floor with the columns that stairs take up in the regions of their foot and head."""
+    labels = floor.labels
+    for way in stairs:
+        for storey, cells, end in (
+            (way.lower, way.lower_cells, way.foot),
+            (way.upper, way.upper_cells, way.head),
+        ):
+            if storey == floor.number:
+                (region,) = labels_at(floor.labels, _cells(floor.here, end[None])).tolist()
+                labels = np.where(cells & (labels == 0) & ~floor.here.space.wall, region + 1, labels)
+    return replace(floor, labels=labels)
 
 
 def _stairs_edges(floors: Sequence[_FloorCut], stairs: Sequence[Stairs]) -> list[RegionEdge]:

@@ -13,6 +13,7 @@ from services.regions.domain.evidence import FloorEvidence
 from services.regions.domain.partition import Growth, PartitionParams
 from services.regions.domain.survey import storeys_of_objects, survey
 from tests.unit.services.regions.rooms import plane, room, seen, two_rooms, without
+from tests.unit.services.regions.stairways import HOLE, STRAIGHT, UPSTAIRS, home
 
 OURS = PartitionParams(dilation=9, votes=3, growth=Growth.DISTANCE, min_part=4.0, merge_width=1.2)
 
@@ -161,6 +162,27 @@ def test_a_kept_floor_stays_where_it_is_when_the_grid_grows() -> None:
     for region in grown.partition.regions:
         assert grown.grids[0].regions[grown.grids[0].cell_of(region.centroid[:2])] > 0
     assert [r.area for r in grown.partition.regions] == [r.area for r in first.partition.regions]
+
+
+def test_stairs_belong_to_both_floors_and_join_them() -> None:
+    evidence = home(STRAIGHT, HOLE)
+    cut = assemble(
+        survey(evidence),
+        objects(("stove", 7, 5, 0.9), ("bed", 7, 5, 3.3)),
+        ("kitchen", "bedroom"),
+        evidence,
+        Cut.none(),
+    )
+    (edge,) = cut.partition.edges
+    below, above = cut.partition.regions
+    assert (edge.kind, edge.a, edge.b) == (EdgeKind.STAIRS, below.region_id, above.region_id)
+    assert edge.position == pytest.approx([1.7, 3.0, 0.0], abs=0.25)
+    assert edge.upper == pytest.approx([5.55, 3.0, UPSTAIRS], abs=0.25)
+    for grid in cut.grids:
+        for x in (2.5, 3.5, 4.5):  # on the flight
+            assert grid.regions[grid.cell_of(np.array([x, 3.0]))] == 1
+    for frontier in cut.partition.frontiers:  # this home has no walls, but under its stairs there is nothing to find
+        assert np.abs(frontier.position[:2] - (4.0, 3.0)).max() > 2.5
 
 
 def test_new_floor_beside_a_kept_region_joins_it() -> None:
