@@ -55,8 +55,13 @@ class Settings(KernelSettings):
     regions_min_unknown: float = Field(
         1.0, ge=0, description="KGSW: A_min of a core without objects, square metres"
     )
-    regions_votes: int = Field(
-        3, ge=1, description="KGSW: objects that a seed group of a mixed core needs (paper: 1)"
+    regions_votes: float = Field(
+        2.0,
+        ge=0,
+        description="KGSW: votes that a seed group of a mixed core needs, at most one an object (paper: 0)",
+    )
+    regions_vote_share: float = Field(
+        0.1, ge=0, le=1, description="KGSW: or this share of its core's votes, where those are few"
     )
     regions_growth: Growth = Field(
         Growth.DISTANCE,
@@ -98,6 +103,7 @@ class Settings(KernelSettings):
             min_core=self.regions_min_core,
             min_unknown=self.regions_min_unknown,
             votes=self.regions_votes,
+            vote_share=self.regions_vote_share,
             growth=self.regions_growth,
             min_part=self.regions_min_part,
             merge_width=self.regions_merge_width,

@@ -21,6 +21,7 @@ from services.regions.domain.cells import cells_of, labels_at
 from services.regions.domain.evidence import FloorEvidence
 from services.regions.domain.flooding import flood
 from services.regions.domain.frontiers import find_frontiers
+from services.regions.domain.functions import votes_of
 from services.regions.domain.identity import keep_ids
 from services.regions.domain.outlines import trace_outlines
 from services.regions.domain.partition import UNKNOWN_FUNCTION, PartitionParams, partition_storey
@@ -85,6 +86,7 @@ def assemble(
     and the map's version are left to the caller.
     """
     objects_on = storeys_of_objects(tuple(surveyed), objects.centres)
+    votes = votes_of(objects.labels, functions)
     frames = _frames(evidence)
     frames_on = storeys_of_objects(tuple(surveyed), frames.centres)
     floors: list[_FloorCut] = []
@@ -96,7 +98,8 @@ def assemble(
             continue
         mine = np.flatnonzero(objects_on == number)
         cells = _cells(here, objects.centres[mine])
-        cut = partition_storey(here.space.free, cells, [functions[i] for i in mine.tolist()], params)
+        kinds = [functions[i] for i in mine.tolist()]
+        cut = partition_storey(here.space.free, cells, kinds, params, votes[mine])
         last = before.grids[old] if old is not None else None
         named = keep_ids(cut.labels, len(cut.functions), here.space.origin, last, next_number)
         next_number = named.next_number

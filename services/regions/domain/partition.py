@@ -45,10 +45,11 @@ class PartitionParams:
     """dilation, marker_radius, eps: the paper's Table of settings (DIL = 6 cells, r = 0.30 m, 2.0 m).
 
     min_core: the core threshold, square metres after dilation; min_unknown: A_min, square metres (both ours).
-    votes: objects that a seed group of a mixed core needs, else its objects follow their core's other groups (1: the
-    paper, a single odd object makes a region). growth: see `Growth`. min_part: by distance, a part of a mixed basin
-    below so many square metres goes to the others. merge_width: regions of one function that share a border of at
-    least so many metres are one (infinite: the paper, none are).
+    votes: what the objects of a seed group of a mixed core, two at least, must have together, else they follow their
+    core's other groups (0: the paper, a single odd object makes a region). vote_share: in a core with few votes, this
+    share of them is enough. growth: see `Growth`. min_part: by distance, a part of
+    a mixed basin below so many square metres goes to the others. merge_width: regions of one function that share a
+    border of at least so many metres are one (infinite: the paper, none are).
     """
 
     resolution: float = 0.05
@@ -57,7 +58,8 @@ class PartitionParams:
     eps: float = 2.0
     min_core: float = 0.25
     min_unknown: float = 1.0
-    votes: int = 1
+    votes: float = 0.0
+    vote_share: float = 0.1
     growth: Growth = Growth.CLEARANCE
     min_part: float = 0.0
     merge_width: float = float("inf")
@@ -87,11 +89,16 @@ class StoreyPartition:
 
 
 def partition_storey(
-    free: Bools, cells: F64, functions: Sequence[str], params: PartitionParams | None = None
+    free: Bools,
+    cells: F64,
+    functions: Sequence[str],
+    params: PartitionParams | None = None,
+    votes: F64 | None = None,
 ) -> StoreyPartition:
     """Algorithm 1 on free space F `(R, C)`, object centres p_i as (row, column) cells `(N, 2)`, and types t_i.
 
-    Cell (row, column) has its centre at (row, column). Deterministic; ties are stated at each step.
+    votes: `(N,)` how much each object vouches for its type, 0..1; one each where not given. Cell (row, column) has its
+    centre at (row, column). Deterministic; ties are stated at each step.
     """
     params = params or PartitionParams()
     if not free.any():
@@ -101,7 +108,7 @@ def partition_storey(
     cores = find_cores(free, clearance, params)  # 2, 3: C_0
     basins = flood(-clearance, cores, free)  # 4: C = Watershed(-D, C_0; F)
     snapped = nearest_cells(cells, basins > 0)  # 6 (line 5, the functions t_i, came in)
-    groups = seed_groups(basins, snapped, functions, params)  # 7-19: O_c, T_c, Pi_c
+    groups = seed_groups(basins, snapped, functions, params, votes)  # 7-19: O_c, T_c, Pi_c
     markers = place_markers(basins, snapped, groups, params)  # 11, 20-22: M
     labels = grow(clearance, basins, markers, groups, params)  # 26: R = Watershed(-D, M; F)
     labels, named = merged(labels, [group.function for group in groups], params)
@@ -120,9 +127,14 @@ def find_cores(free: Bools, clearance: F32, params: PartitionParams) -> I32:
 
 
 def seed_groups(
-    basins: I32, snapped: I64, functions: Sequence[str], params: PartitionParams
+    basins: I32,
+    snapped: I64,
+    functions: Sequence[str],
+    params: PartitionParams,
+    votes: F64 | None = None,
 ) -> tuple[SeedGroup, ...]:
     """Pi_c of every core c, in the order of the cores and, within one, of first members (Eq. 5)."""
+    votes = np.ones(len(functions)) if votes is None else votes
     core_of = basins[tuple(snapped.T)] if basins.any() else np.zeros(len(snapped), np.int32)
     kinds = np.array(functions, dtype=np.str_)
     pieces = _pieces(core_of, kinds, snapped, params)
@@ -130,7 +142,7 @@ def seed_groups(
     groups: list[SeedGroup] = []
     for core, members in enumerate(_members(core_of, len(areas))[1:], start=1):  # 7, 8: O_c
         if len(members):
-            groups += _groups_of_core(core, members, kinds, pieces, params)  # 13-19
+            groups += _groups_of_core(core, members, kinds, pieces, votes, params)  # 13-19
         elif areas[core] >= params.min_unknown:  # 9, 10
             groups.append(SeedGroup(UNKNOWN_FUNCTION, core, ()))  # 11
     if not groups and len(areas) > 1:
@@ -203,7 +215,12 @@ def _pieces(core_of: I32, kinds: NDArray[np.str_], snapped: I64, params: Partiti
 
 
 def _groups_of_core(
-    core: int, members: I64, kinds: NDArray[np.str_], pieces: I64, params: PartitionParams
+    core: int,
+    members: I64,
+    kinds: NDArray[np.str_],
+    pieces: I64,
+    votes: F64,
+    params: PartitionParams,
 ) -> list[SeedGroup]:
     known = members[kinds[members] != UNKNOWN_FUNCTION]
     found = dict.fromkeys(pieces[known].tolist())  # 14, 18: T_c, DB_eps
@@ -211,21 +228,25 @@ def _groups_of_core(
         SeedGroup(str(kinds[same[0]]), core, tuple(same.tolist()))
         for same in (known[pieces[known] == piece] for piece in found)
     ]
-    groups = _elected(groups, params.votes)
+    groups = _elected(groups, votes, params)
     if len({group.function for group in groups}) <= 1:  # 15, 16: one type, one group
         function = groups[0].function if groups else UNKNOWN_FUNCTION
         return [SeedGroup(function, core, tuple(members.tolist()))]
     return groups
 
 
-def _elected(groups: list[SeedGroup], votes: int) -> list[SeedGroup]:
-    """Groups with enough members; where none has, those of the function with the most objects, ties by its name."""
-    enough = [group for group in groups if len(group.members) >= votes]
-    if enough or not groups:
-        return enough
-    counts: dict[str, int] = {}
-    for group in groups:
-        counts[group.function] = counts.get(group.function, 0) + len(group.members)
+def _elected(groups: list[SeedGroup], votes: F64, params: PartitionParams) -> list[SeedGroup]:
+    """Groups with enough votes; where none has, those of the function with the most, ties by its name."""
+    if not groups or not params.votes:
+        return groups
+    got = [float(votes[list(group.members)].sum()) for group in groups]
+    enough = min(params.votes, params.vote_share * sum(got)) - 1e-9
+    elected = [g for g, count in zip(groups, got, strict=True) if count >= enough and len(g.members) > 1]
+    if elected:
+        return elected
+    counts: dict[str, float] = {}
+    for group, count in zip(groups, got, strict=True):
+        counts[group.function] = counts.get(group.function, 0.0) + count
     winner = max(sorted(counts), key=lambda function: counts[function])
     return [group for group in groups if group.function == winner]
 

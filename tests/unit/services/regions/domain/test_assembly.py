@@ -15,7 +15,7 @@ from services.regions.domain.survey import storeys_of_objects, survey
 from tests.unit.services.regions.rooms import plane, room, seen, two_rooms, without
 from tests.unit.services.regions.stairways import HOLE, STRAIGHT, UPSTAIRS, home
 
-OURS = PartitionParams(dilation=9, votes=3, growth=Growth.DISTANCE, min_part=4.0, merge_width=1.2)
+OURS = PartitionParams(dilation=9, votes=2.0, growth=Growth.DISTANCE, min_part=4.0, merge_width=1.2)
 
 
 def objects(*items: tuple[str, float, float, float]) -> PlacedObjects:
@@ -181,7 +181,9 @@ def test_stairs_belong_to_both_floors_and_join_them() -> None:
     for grid in cut.grids:
         for x in (2.5, 3.5, 4.5):  # on the flight
             assert grid.regions[grid.cell_of(np.array([x, 3.0]))] == 1
-    for frontier in cut.partition.frontiers:  # this home has no walls, but under its stairs there is nothing to find
+    for (
+        frontier
+    ) in cut.partition.frontiers:  # this home has no walls, but under its stairs there is nothing to find
         assert np.abs(frontier.position[:2] - (4.0, 3.0)).max() > 2.5
 
 

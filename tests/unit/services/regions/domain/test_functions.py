@@ -24,6 +24,7 @@ from services.regions.domain.functions import (
     prior_of,
     table_words,
     unlisted,
+    votes_of,
 )
 
 LVIS = Path(__file__).resolve().parents[6] / "shared" / "data" / "clip_text"
@@ -263,3 +264,10 @@ def _left_out(rows: dict[str, np.ndarray]) -> tuple[int, int, int]:
         answered += len(borrowed)
         right += bool(borrowed and own[int(borrowed[word].argmax())] > 0)
     return right, answered, asked
+
+
+def test_an_object_votes_by_its_own_word_for_the_function_that_it_was_given() -> None:
+    words = ("stove", "stove", "chair", "picture", "quarg", "stove", "stove")
+    functions = ("kitchen", "bedroom", "dining area", "living room", "kitchen", "wine cellar", "unknown")
+    assert votes_of(words, functions).tolist() == [1.0, 0.0, 0.25, 0.0, 0.5, 0.5, 0.0]
+    assert votes_of((), ()).shape == (0,)

@@ -27,7 +27,7 @@ from services.regions.domain.partition import (
 )
 
 PARAMS = PartitionParams()
-OURS = PartitionParams(dilation=9, votes=3, growth=Growth.DISTANCE, min_part=4.0, merge_width=1.2)
+OURS = PartitionParams(dilation=9, votes=2.0, growth=Growth.DISTANCE, min_part=4.0, merge_width=1.2)
 MASKS = arrays.arrays(np.bool_, st.tuples(st.integers(0, 24), st.integers(0, 24)))
 
 
@@ -184,10 +184,36 @@ def test_a_lone_odd_object_makes_no_region_where_votes_are_asked_for() -> None:
     assert (ours.labels == 1).all()
 
 
+def test_a_weak_witness_counts_less_than_a_vote() -> None:
+    basins = np.ones((100, 100), np.int32)
+    snapped = np.array([[10, 10], [12, 10], [14, 10], [90, 90], [92, 90], [94, 90]])
+    functions = ("dining area",) * 3 + ("kitchen",) * 3  # a table and two chairs; a mug, a plate and a bowl
+    votes = np.array([1.0, 0.5, 0.5, 0.4, 0.4, 0.4])
+    strict = replace(PARAMS, votes=2.0, vote_share=1.0)
+    (group,) = seed_groups(basins, snapped, functions, strict, votes)
+    assert group.function == "dining area"
+    groups = seed_groups(basins, snapped, functions, replace(strict, votes=1.2), votes)
+    assert [each.function for each in groups] == ["dining area", "kitchen"]
+
+
+def test_where_votes_are_few_a_share_of_them_is_enough_but_never_one_object() -> None:
+    basins = np.ones((100, 100), np.int32)
+    snapped = np.array([[10, 10], [12, 10], [90, 90], [92, 90], [50, 90]])
+    functions = ("dining area", "dining area", "kitchen", "kitchen", "office")
+    votes = np.array([1.0, 0.25, 0.4, 0.4, 1.0])  # 3.05 in all: a third of them is 1.02, a tenth 0.31
+    few = replace(PARAMS, votes=2.0, vote_share=1 / 3)
+    assert [g.function for g in seed_groups(basins, snapped, functions, few, votes)] == ["dining area"]
+    fewer = replace(PARAMS, votes=2.0, vote_share=0.1)
+    assert [g.function for g in seed_groups(basins, snapped, functions, fewer, votes)] == [
+        "dining area",
+        "kitchen",
+    ]
+
+
 def test_where_no_group_has_votes_enough_the_most_common_function_has_the_core() -> None:
     basins = np.ones((100, 100), np.int32)
     snapped = np.array([[10, 10], [10, 20], [90, 90]])
-    functions = ("office", "kitchen", "kitchen")  # the two kitchen things are far apart
+    functions = ("office", "kitchen", "kitchen")  # the two kitchen things are far apart, so each group is one
     (group,) = seed_groups(basins, snapped, functions, replace(PARAMS, votes=3))
     assert (group.function, group.members) == ("kitchen", (0, 1, 2))
 
@@ -236,7 +262,7 @@ def test_a_part_too_small_for_an_area_goes_to_the_others() -> None:
     )  # its part would be a third of nine square metres
     functions = ("kitchen", "office", "office", "office")
     for least, named in ((2.0, ("kitchen", "office")), (4.0, ("office",))):
-        params = replace(OURS, votes=1, min_part=least, eps=5.0)
+        params = replace(OURS, votes=0, min_part=least, eps=5.0)
         cut = partition_storey(hall(), corner_kitchen, functions, params)
         assert cut.functions == named
         assert (cut.labels > 0).all()
@@ -244,7 +270,7 @@ def test_a_part_too_small_for_an_area_goes_to_the_others() -> None:
 
 def test_by_distance_a_room_whose_marker_is_beside_its_door_keeps_itself_and_nothing_else() -> None:
     at = cells((30, 58), (3, 100), (57, 118))
-    params = replace(OURS, votes=1)
+    params = replace(OURS, votes=0)
     cut = partition_storey(two_halls(18), at, ("kitchen", "bedroom", "bedroom"), params)
     kitchen = cut.labels == 1 + cut.functions.index("kitchen")
     assert kitchen[:, :60].all()
@@ -326,7 +352,7 @@ def test_regions_lie_in_free_space_and_every_object_in_a_region(
     free: Bools, at: list[tuple[float, float]], data: st.DataObject
 ) -> None:
     functions = [data.draw(st.sampled_from(["kitchen", "office", "unknown"])) for _ in at]
-    params = data.draw(st.sampled_from([PARAMS, OURS, replace(OURS, dilation=2, votes=1)]))
+    params = data.draw(st.sampled_from([PARAMS, OURS, replace(OURS, dilation=2, votes=0)]))
     cut = partition_storey(free, cells(*at), functions, params)
     assert not cut.labels[~free].any()
     assert sorted(np.unique(cut.labels[cut.labels > 0])) == [k + 1 for k in range(len(cut.functions))]
@@ -342,7 +368,7 @@ def test_regions_lie_in_free_space_and_every_object_in_a_region(
 def test_moving_the_grid_moves_the_regions(free: Bools, down: int, across: int) -> None:
     at = cells((3, 3), (12, 17), (20, 5))
     functions = ("kitchen", "office", "kitchen")
-    params = replace(OURS, dilation=2, votes=1)
+    params = replace(OURS, dilation=2, votes=0)
     moved = np.pad(free, ((down, 0), (across, 0)))
     there = partition_storey(moved, at + np.array([down, across]), functions, params)
     here = partition_storey(free, at, functions, params)
