@@ -63,6 +63,11 @@ class Settings(KernelSettings):
     regions_vote_share: float = Field(
         0.1, ge=0, le=1, description="KGSW: or this share of its core's votes, where those are few"
     )
+    regions_sparse: float = Field(
+        15.0,
+        ge=0,
+        description="KGSW: square metres a vote above which one object with a whole vote makes a group",
+    )
     regions_growth: Growth = Field(
         Growth.DISTANCE,
         description="KGSW: how the last watershed grows markers; clearance: the paper's -D; distance: see Growth",
@@ -104,6 +109,7 @@ class Settings(KernelSettings):
             min_unknown=self.regions_min_unknown,
             votes=self.regions_votes,
             vote_share=self.regions_vote_share,
+            sparse=self.regions_sparse,
             growth=self.regions_growth,
             min_part=self.regions_min_part,
             merge_width=self.regions_merge_width,

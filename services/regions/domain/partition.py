@@ -47,8 +47,9 @@ class PartitionParams:
     min_core: the core threshold, square metres after dilation; min_unknown: A_min, square metres (both ours).
     votes: what the objects of a seed group of a mixed core, two at least, must have together, else they follow their
     core's other groups (0: the paper, a single odd object makes a region). vote_share: in a core with few votes, this
-    share of them is enough. growth: see `Growth`. min_part: by distance, a part of
-    a mixed basin below so many square metres goes to the others. merge_width: regions of one function that share a
+    share of them is enough. sparse: in a core with less than a vote for so many square metres, where furniture is all
+    that is known, one object with a whole vote makes a group too. growth: see `Growth`. min_part: by distance, a part
+    of a mixed basin below so many square metres goes to the others. merge_width: regions of one function that share a
     border of at least so many metres are one (infinite: the paper, none are).
     """
 
@@ -60,6 +61,7 @@ class PartitionParams:
     min_unknown: float = 1.0
     votes: float = 0.0
     vote_share: float = 0.1
+    sparse: float = 15.0
     growth: Growth = Growth.CLEARANCE
     min_part: float = 0.0
     merge_width: float = float("inf")
@@ -142,7 +144,7 @@ def seed_groups(
     groups: list[SeedGroup] = []
     for core, members in enumerate(_members(core_of, len(areas))[1:], start=1):  # 7, 8: O_c
         if len(members):
-            groups += _groups_of_core(core, members, kinds, pieces, votes, params)  # 13-19
+            groups += _groups_of_core(core, areas[core], members, kinds, pieces, votes, params)  # 13-19
         elif areas[core] >= params.min_unknown:  # 9, 10
             groups.append(SeedGroup(UNKNOWN_FUNCTION, core, ()))  # 11
     if not groups and len(areas) > 1:
@@ -216,6 +218,7 @@ def _pieces(core_of: I32, kinds: NDArray[np.str_], snapped: I64, params: Partiti
 
 def _groups_of_core(
     core: int,
+    area: float,
     members: I64,
     kinds: NDArray[np.str_],
     pieces: I64,
@@ -228,20 +231,25 @@ def _groups_of_core(
         SeedGroup(str(kinds[same[0]]), core, tuple(same.tolist()))
         for same in (known[pieces[known] == piece] for piece in found)
     ]
-    groups = _elected(groups, votes, params)
+    groups = _elected(groups, votes, area, params)
     if len({group.function for group in groups}) <= 1:  # 15, 16: one type, one group
         function = groups[0].function if groups else UNKNOWN_FUNCTION
         return [SeedGroup(function, core, tuple(members.tolist()))]
     return groups
 
 
-def _elected(groups: list[SeedGroup], votes: F64, params: PartitionParams) -> list[SeedGroup]:
+def _elected(groups: list[SeedGroup], votes: F64, area: float, params: PartitionParams) -> list[SeedGroup]:
     """Groups with enough votes; where none has, those of the function with the most, ties by its name."""
     if not groups or not params.votes:
         return groups
     got = [float(votes[list(group.members)].sum()) for group in groups]
     enough = min(params.votes, params.vote_share * sum(got)) - 1e-9
-    elected = [g for g, count in zip(groups, got, strict=True) if count >= enough and len(g.members) > 1]
+    alone = max(enough, 1.0 - 1e-9) if sum(got) * params.sparse < area else np.inf
+    elected = [
+        group
+        for group, count in zip(groups, got, strict=True)
+        if count >= (enough if len(group.members) > 1 else alone)
+    ]
     if elected:
         return elected
     counts: dict[str, float] = {}

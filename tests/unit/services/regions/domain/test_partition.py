@@ -210,6 +210,18 @@ def test_where_votes_are_few_a_share_of_them_is_enough_but_never_one_object() ->
     ]
 
 
+def test_on_a_floor_with_hardly_any_objects_a_bed_alone_makes_a_bedroom_and_a_mug_no_kitchen() -> None:
+    snapped = np.array([[10, 10], [10, 90], [90, 90], [90, 10]])
+    functions = ("living room", "bedroom", "kitchen", "kitchen")
+    votes = np.array([1.0, 1.0, 0.4, 0.4])  # 2.8 in all
+    params = replace(PARAMS, votes=2.0)
+    large, small = np.ones((140, 140), np.int32), np.ones((100, 100), np.int32)  # 49 and 25 square metres
+    groups = seed_groups(large, snapped, functions, params, votes)
+    assert sorted(group.function for group in groups) == ["bedroom", "living room"]
+    (group,) = seed_groups(small, snapped, functions, params, votes)
+    assert group.function == "bedroom"  # the first of those with the most votes
+
+
 def test_where_no_group_has_votes_enough_the_most_common_function_has_the_core() -> None:
     basins = np.ones((100, 100), np.int32)
     snapped = np.array([[10, 10], [10, 20], [90, 90]])
