@@ -11,6 +11,7 @@ import numpy as np
 from lab.evaluation.regions.floors import FloorPlace
 from ovip.scene.types import F64, I32
 from services.regions.config import Settings
+from services.regions.domain import cells
 from services.regions.domain.assembly import Cut, assemble
 from services.regions.domain.baselines.auto_k import auto_k_rooms
 from services.regions.domain.baselines.hovsg import hovsg_rooms
@@ -77,8 +78,8 @@ def auto_k(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
     storeys = storeys_of_objects(surveyed, place.objects.centres)
     regions = []
     for number, here in enumerate(surveyed):
-        cells = cells_of(here, place.objects.centres[storeys == number])
-        labels, clustering = auto_k_rooms(here.space.free, cells, 0, service_params())
+        at = cells_of(here, place.objects.centres[storeys == number])
+        labels, clustering = auto_k_rooms(here.space.free, at, 0, service_params())
         regions.append(_nameless(labels, clustering.silhouettes))
     return tuple(regions)
 
@@ -120,8 +121,7 @@ def true_functions(place: FloorPlace, surveyed: Surveyed) -> tuple[str, ...]:
 
 def cells_of(here: SurveyedStorey, points: F64) -> F64:
     """World points `(N, 2 or 3)` as (row, column), cell centres at integers -> `(N, 2)`."""
-    cells: F64 = (points[:, 1::-1] - np.asarray(here.space.origin)[::-1]) / here.space.resolution - 0.5
-    return cells
+    return cells.cells_of(points, here.space.origin, here.space.resolution)
 
 
 def _table_functions(place: FloorPlace, surveyed: Surveyed) -> tuple[str, ...]:

@@ -15,12 +15,14 @@ _APART = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Opening:
-    """A border between regions `a` < `b` (0-based). width: metres; middle: (row, column) of its middle."""
+    """A border between regions `a` < `b` (0-based). width: metres; middle: (row, column) of its middle; ends: `(2, 2)`
+    of its two ends."""
 
     a: int
     b: int
     width: float
     middle: F64
+    ends: F64
 
 
 def find_openings(labels: I32, resolution: float, min_width: float = 0.30) -> tuple[Opening, ...]:
@@ -40,7 +42,7 @@ def find_openings(labels: I32, resolution: float, min_width: float = 0.30) -> tu
         width = resolution * float(np.hypot(down[members].sum(), (~down[members]).sum()))
         if width >= min_width:
             a, b = pair[number[members[0]]].tolist()
-            openings.append(Opening(a, b, width, _middle(middles[members])))
+            openings.append(Opening(a, b, width, _middle(middles[members]), _ends(middles[members])))
     return tuple(sorted(openings, key=lambda opening: (opening.a, opening.b)))
 
 
@@ -63,3 +65,10 @@ def _middle(points: F64) -> F64:
     """The point nearest to the mean, so that it lies in the opening even where the border bends."""
     middle: F64 = points[np.argmin(((points - points.mean(axis=0)) ** 2).sum(axis=1))]
     return middle
+
+
+def _ends(points: F64) -> F64:
+    """The point farthest from the mean, and the one farthest from that -> `(2, 2)`."""
+    first = points[np.argmax(((points - points.mean(axis=0)) ** 2).sum(axis=1))]
+    last = points[np.argmax(((points - first) ** 2).sum(axis=1))]
+    return np.stack([first, last])

@@ -16,10 +16,10 @@ from scipy import ndimage
 
 from ovip.scene.grid import FloorGrid
 from ovip.scene.types import F64, I32, I64, Bools, EdgeKind, Floor, Frontier, Partition, Region, RegionEdge
-from services.regions.domain.adjacency import find_openings
+from services.regions.domain.adjacency import Opening, find_openings
 from services.regions.domain.cells import cells_of, labels_at
 from services.regions.domain.evidence import FloorEvidence
-from services.regions.domain.flooding import flood
+from services.regions.domain.flooding import clearance_of, flood
 from services.regions.domain.frontiers import find_frontiers
 from services.regions.domain.functions import votes_of
 from services.regions.domain.identity import keep_ids
@@ -33,7 +33,9 @@ HALLWAY = "hallway"
 _SAME_FLOOR = 0.5
 """Metres: a floor this close to one of the last partition is that floor."""
 _DOOR = 1.3
-"""Metres: a passage up to this wide is a doorway (a double door and its frame), a wider one an opening."""
+"""Metres: a passage between walls up to this wide is a doorway (a double door and its frame)."""
+_JAMB = 2.5
+"""Cells: the ends of a doorway are this near to what is not free."""
 _HALLWAY_PASSAGES = 3
 """A region of unknown function that joins at least so many others is a hallway."""
 
@@ -186,16 +188,26 @@ def _kept(here: SurveyedStorey, number: int, before: Cut, old: int) -> _FloorCut
 
 
 def _edges(floor: _FloorCut) -> list[RegionEdge]:
+    """The openings in free space; nobody passes through the columns of a flight of stairs."""
+    space = floor.here.space
+    beside_wall = clearance_of(space.free, 1.0) <= _JAMB
     return [
         RegionEdge(
             floor.ids[opening.a],
             floor.ids[opening.b],
             opening.width,
             floor.world(*opening.middle.tolist()),
-            EdgeKind.DOORWAY if opening.width <= _DOOR else EdgeKind.OPENING,
+            _kind(opening, beside_wall),
         )
-        for opening in find_openings(floor.labels, floor.here.space.resolution)
+        for opening in find_openings(np.where(space.free, floor.labels, 0), space.resolution)
     ]
+
+
+def _kind(opening: Opening, beside_wall: Bools) -> EdgeKind:
+    """A doorway is narrow and has a wall at both ends."""
+    rows, columns = np.floor(opening.ends).astype(int).T
+    narrow = opening.width <= _DOOR
+    return EdgeKind.DOORWAY if narrow and beside_wall[rows, columns].all() else EdgeKind.OPENING
 
 
 def _with_stairs(floor: _FloorCut, stairs: Sequence[Stairs]) -> _FloorCut:

@@ -15,6 +15,7 @@ def test_a_straight_border_is_as_wide_as_its_cells() -> None:
     assert (opening.a, opening.b) == (0, 1)
     assert opening.width == pytest.approx(1.0)
     assert opening.middle.tolist() == pytest.approx([9, 4.5], abs=1)
+    assert sorted(opening.ends.tolist()) == [[0, 4.5], [19, 4.5]]
 
 
 def test_a_slanted_border_is_as_wide_as_the_line() -> None:

@@ -199,6 +199,27 @@ def test_new_floor_beside_a_kept_region_joins_it() -> None:
     assert after.area - before.area == pytest.approx(1.5, abs=0.3)
 
 
+def test_a_narrow_border_is_a_doorway_from_wall_to_wall_and_an_opening_from_wall_to_nowhere() -> None:
+    params = replace(OURS, min_part=1.0)
+    corridor = seen((room((0, 1.2), (0, 6)), (0.6, 3.0, 1.2)))
+    ends = objects(
+        ("stove", 0.6, 0.5, 0.9), ("fridge", 0.6, 1.0, 0.9), ("bed", 0.6, 5.5, 0.4), ("bed", 0.6, 5, 1)
+    )
+    functions = ("kitchen", "kitchen", "bedroom", "bedroom")
+    (edge,) = assemble(survey(corridor), ends, functions, corridor, Cut.none(), params).partition.edges
+    assert (edge.kind, round(edge.width, 1)) == (EdgeKind.DOORWAY, 1.2)
+    small = seen((room((0, 2.2), (0, 2.2)), (1.1, 1.1, 1.2)))
+    corners = objects(
+        *(("stove", 0.3, 0.3, 0.9), ("fridge", 0.3, 0.4, 0.9)),
+        *(("bed", 1.9, 0.3, 0.4), ("bed", 1.9, 0.4, 0.4)),
+        *(("desk", 1.1, 1.9, 0.7), ("desk", 1.1, 1.8, 0.7)),
+    )
+    cut = assemble(survey(small), corners, (*functions, "office", "office"), small, Cut.none(), params)
+    assert len(cut.partition.regions) == 3
+    assert min(edge.width for edge in cut.partition.edges) < 1.3  # from a wall to the middle of the room
+    assert {edge.kind for edge in cut.partition.edges} == {EdgeKind.OPENING}
+
+
 def test_a_room_that_nothing_names_but_that_leads_to_three_others_is_a_hallway() -> None:
     evidence = seen(*_hall_and_three_rooms())
     things = objects(("bed", 1.5, 1.0, 0.4), ("stove", 4.5, 1.0, 0.9), ("desk", 7.5, 1.0, 0.7))
