@@ -100,30 +100,31 @@ class FloorGrouping:
     ) -> tuple[Grouping, GroupingMemory]:
         """The function of each object, and what to remember of it. storeys: `(N,)` the floor of each object."""
         memory = memory.of(objects)
-        functions = [""] * len(objects.ids)
+        functions, told = [""] * len(objects.ids), [False] * len(objects.ids)
         fallbacks: list[str] = []
         floors = np.unique(storeys).tolist()
         for number in floors:
             members = np.flatnonzero(storeys == number)
             where = f" on floor {number}" if len(floors) > 1 else ""
             grouping, memory = await self._floor(objects.only(members), memory, where)
-            for member, function in zip(members.tolist(), grouping.functions, strict=True):
-                functions[member] = function
+            for at, member in enumerate(members.tolist()):
+                functions[member], told[member] = grouping.functions[at], grouping.told[at]
             fallbacks += [text for text in grouping.fallbacks if text not in fallbacks]
-        return Grouping(tuple(functions), tuple(fallbacks)), memory
+        return Grouping(tuple(functions), tuple(fallbacks), tuple(told)), memory
 
     async def _floor(
         self, floor: PlacedObjects, memory: GroupingMemory, where: str
     ) -> tuple[Grouping, GroupingMemory]:
         memory = await self._asked(floor, memory)
         answers = memory.functions(floor)
+        told = tuple(answer is not None for answer in answers)
         open_count = answers.count(None)
         if not open_count:
-            return Grouping(tuple(answer or "" for answer in answers)), memory
+            return Grouping(tuple(answer or "" for answer in answers), (), told), memory
         table = await self._last.group(floor)
         functions = tuple(a if a is not None else b for a, b in zip(answers, table.functions, strict=True))
         reason = self._reason(memory, where, open_count, len(answers))
-        return Grouping(functions, (*reason, *table.fallbacks)), memory
+        return Grouping(functions, (*reason, *table.fallbacks), told), memory
 
     async def _asked(self, floor: PlacedObjects, memory: GroupingMemory) -> GroupingMemory:
         """The memory after asking about the floor, if it is time to."""

@@ -115,6 +115,7 @@ def _made(here: _Here, gathered: Gathered, before: Answered, afresh: bool, param
         before.cut,
         params.partition,
         frozenset(kept),
+        here.grouping.told,
     )
     for floor, number in kept.items():
         bases[number] = before.bases[floor]

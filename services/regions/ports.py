@@ -45,10 +45,14 @@ class Vlm(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Grouping:
-    """The function of each object asked about, in order, and which fallbacks took part."""
+    """The function of each object asked about, in order, and which fallbacks took part.
+
+    told: which of them a VLM named; none where it is empty.
+    """
 
     functions: tuple[str, ...]
     fallbacks: tuple[str, ...] = ()
+    told: tuple[bool, ...] = ()
 
 
 class Grouper(Protocol):

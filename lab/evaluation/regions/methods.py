@@ -49,8 +49,9 @@ def kgsw_to_the_letter(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyReg
 
 
 def kgsw_oracle_functions(place: FloorPlace, surveyed: Surveyed) -> tuple[StoreyRegions, ...]:
-    """Where every object's function is that of the area it is truly in: what a perfect grouping would give."""
-    return assembled(place, surveyed, true_functions(place, surveyed), service_params())
+    """Where every object's function is that of the area it is truly in: what a VLM that errs never would give."""
+    functions = true_functions(place, surveyed)
+    return assembled(place, surveyed, functions, service_params(), (True,) * len(functions))
 
 
 def ours_but(**paper: Any) -> Method:
@@ -140,10 +141,14 @@ def _table_functions(place: FloorPlace, surveyed: Surveyed) -> tuple[str, ...]:
 
 
 def assembled(
-    place: FloorPlace, surveyed: Surveyed, functions: tuple[str, ...], params: PartitionParams
+    place: FloorPlace,
+    surveyed: Surveyed,
+    functions: tuple[str, ...],
+    params: PartitionParams,
+    told: tuple[bool, ...] = (),
 ) -> tuple[StoreyRegions, ...]:
-    """The service's assembly of objects with these functions."""
-    cut = assemble(surveyed, place.objects, functions, place.evidence, Cut.none(), params)
+    """The service's assembly of objects with these functions; told: as if a VLM had named them, see `votes_of`."""
+    cut = assemble(surveyed, place.objects, functions, place.evidence, Cut.none(), params, told=told)
     of_region = {region.region_id: region.function for region in cut.partition.regions}
     return tuple(
         StoreyRegions(grid.regions.astype(np.int32), tuple(of_region[i] for i in grid.region_ids), {})

@@ -80,15 +80,16 @@ def assemble(
     before: Cut,
     params: PartitionParams | None = None,
     kept: frozenset[int] = frozenset(),
+    told: Sequence[bool] = (),
 ) -> Cut:
     """The scene cut into regions, each with its objects and the frames taken in it; the revision after `before`'s.
 
-    functions: one for each object. kept: floors of `before` whose regions stay as they are; objects and frames are
-    placed in them anew. Every object and frame is on one floor and, where that floor has regions, in one. The events
-    and the map's version are left to the caller.
+    functions: one for each object; told: whether a VLM named it, none of them where empty. kept: floors of `before`
+    whose regions stay as they are; objects and frames are placed in them anew. Every object and frame is on one floor
+    and, where that floor has regions, in one. The events and the map's version are left to the caller.
     """
     objects_on = storeys_of_objects(tuple(surveyed), objects.centres)
-    votes = votes_of(objects.labels, functions)
+    votes = votes_of(objects.labels, functions, told)
     frames = _frames(evidence)
     frames_on = storeys_of_objects(tuple(surveyed), frames.centres)
     floors: list[_FloorCut] = []

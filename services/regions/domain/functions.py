@@ -46,7 +46,8 @@ class FunctionParams:
     function. Measured with MiniLM on 145 words that the table lacks, 19 of them no household things: 79 borrow,
     72 of them rightly; with 3 neighbours and no need to agree it was 141 and 101.
 
-    unheard: the vote of a word or a function that the table lacks.
+    unheard: the vote of a word or a function that the table lacks. witness: the least vote of an object whose function
+    a VLM named, so that three of them make an area.
     """
 
     company: float = 12.0
@@ -59,6 +60,7 @@ class FunctionParams:
     stands_out: float = 2.5
     agree: float = 0.35
     unheard: float = 0.5
+    witness: float = 0.7
 
 
 _CUT_OFF = 5.0
@@ -119,11 +121,17 @@ def function_scores(
     return scores
 
 
-def votes_of(words: Sequence[str], functions: Sequence[str], params: FunctionParams | None = None) -> F64:
-    """How much each of N objects vouches by its own word for the function it was given, whoever gave it -> `(N,)`.
+def votes_of(
+    words: Sequence[str],
+    functions: Sequence[str],
+    told: Sequence[bool] = (),
+    params: FunctionParams | None = None,
+) -> F64:
+    """How much each of N objects vouches by its own word for the function it was given -> `(N,)`, 0..1.
 
-    What the table says of the word and the function: 1 for a stove in a kitchen, a quarter for a chair in an office.
-    `unheard` for a word or a function that the table does not know.
+    What the table says of the word and the function: 1 for a stove in a kitchen, a quarter for a chair in an office;
+    `unheard` for a word or a function that it does not know; and at least `witness` for one that a VLM named, which
+    saw what stands around it: `told`, `(N,)`, or none of them where it is empty.
     """
     params = params or FunctionParams()
     votes = np.full(len(words), params.unheard)
@@ -133,7 +141,10 @@ def votes_of(words: Sequence[str], functions: Sequence[str], params: FunctionPar
             votes[number] = (
                 0.0 if prior is None or function not in FUNCTIONS else prior[FUNCTIONS.index(function)]
             )
-    return votes
+    named = np.array(told, dtype=bool) if len(told) else np.zeros(len(words), dtype=bool)
+    named &= np.array([function != UNKNOWN_FUNCTION for function in functions], dtype=bool)
+    heard: F64 = np.where(named, np.maximum(votes, params.witness), votes)
+    return heard
 
 
 def unlisted(words: tuple[str, ...]) -> tuple[str, ...]:

@@ -54,7 +54,7 @@ async def test_a_floor_is_asked_about_once_and_again_only_with_another_set() -> 
     first, memory = await named(namers(vlm), objects, GroupingMemory())
     moved = PlacedObjects(objects.ids[::-1], objects.labels[::-1], objects.centres + 1)
     again, memory = await named(namers(vlm), moved, memory)
-    assert first == again == Grouping(("studio", "studio"))
+    assert first == again == Grouping(("studio", "studio"), (), (True, True))
     assert vlm.asked == [("o0", "o1")]
     await named(namers(vlm), things("bed", "oven"), memory)  # another label
     assert len(vlm.asked) == 2
@@ -82,13 +82,14 @@ async def test_few_new_objects_have_the_tables_function_until_they_are_a_fifth()
     _, memory = await named(namers(vlm), things(*["box"] * 9), GroupingMemory())
     grouping, memory = await named(namers(vlm), things(*["box"] * 9, "stove"), memory)
     assert grouping.functions == (*["studio"] * 9, "kitchen")
+    assert grouping.told == (*[True] * 9, False)
     assert grouping.fallbacks == ("grouping: function table for 1 of 10 objects, too few to ask a VLM again",)
     grouping, memory = await named(namers(vlm), things(*["box"] * 9, "stove", "bed"), memory)  # 2 of 11
     assert len(vlm.asked) == 1
     grouping, memory = await named(
         namers(vlm), things(*["box"] * 9, "stove", "bed", "cup"), memory
     )  # 3 of 12
-    assert grouping == Grouping(("studio",) * 12)
+    assert grouping == Grouping(("studio",) * 12, (), (True,) * 12)
     assert [len(ids) for ids in vlm.asked] == [9, 12]
 
 
@@ -119,7 +120,7 @@ async def test_each_floor_is_a_question_of_its_own_and_answers_keep_their_places
     more = things("bed", "stove", "cup", "toilet")
     answer, _ = await grouping.functions(np.array([1, 0, 1, 7]), more, memory)
     assert vlm.asked[2:] == [("o3",)]
-    assert answer == Grouping(("studio",) * 4)
+    assert answer == Grouping(("studio",) * 4, (), (True,) * 4)
 
 
 @pytest.mark.parametrize(
@@ -168,7 +169,7 @@ async def test_patience_ends_and_an_answer_makes_good() -> None:
     assert waiting.functions == ("bedroom",)
     vlm.error = None
     grouping, memory = await named(namers(vlm, params), things("bed"), memory)
-    assert grouping == Grouping(("studio",))
+    assert grouping == Grouping(("studio",), (), (True,))
     assert (memory.failures, memory.skipped, memory.why) == (0, 0, "")
 
 
@@ -191,7 +192,7 @@ async def test_answers_outlive_a_failure_to_answer_for_more() -> None:
 async def test_the_only_grouper_answers_each_time_and_gives_no_reason() -> None:
     only = FloorGrouping((TableGrouper(NoEncoder()),))
     grouping, memory = await only.functions(np.array([0]), things("bed"), GroupingMemory())
-    assert grouping == Grouping(("bedroom",))
+    assert grouping == Grouping(("bedroom",), (), (False,))
     assert memory == GroupingMemory()
 
 

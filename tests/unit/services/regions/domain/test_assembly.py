@@ -199,6 +199,18 @@ def test_new_floor_beside_a_kept_region_joins_it() -> None:
     assert after.area - before.area == pytest.approx(1.5, abs=0.3)
 
 
+def test_three_things_that_a_vlm_put_in_one_area_make_it_where_their_words_alone_would_not() -> None:
+    evidence = seen((room((0, 8), (0, 4)), (4.0, 2.0, 1.2)))
+    chairs = objects(
+        *(("sofa", x, y, 0.5) for x in (1, 2) for y in (0.5, 1.5, 2.5, 3.5)),
+        *(("chair", 6.5, 1, 0.5), ("chair", 6.5, 2, 0.5), ("chair", 6.5, 3, 0.5)),
+    )
+    functions = ("living room",) * 8 + ("balcony",) * 3
+    for told, named in (((), ["living room"]), ((True,) * 11, ["balcony", "living room"])):
+        cut = assemble(survey(evidence), chairs, functions, evidence, Cut.none(), OURS, told=told)
+        assert sorted(region.function for region in cut.partition.regions) == named
+
+
 def test_a_narrow_border_is_a_doorway_from_wall_to_wall_and_an_opening_from_wall_to_nowhere() -> None:
     params = replace(OURS, min_part=1.0)
     corridor = seen((room((0, 1.2), (0, 6)), (0.6, 3.0, 1.2)))

@@ -271,3 +271,10 @@ def test_an_object_votes_by_its_own_word_for_the_function_that_it_was_given() ->
     functions = ("kitchen", "bedroom", "dining area", "living room", "kitchen", "wine cellar", "unknown")
     assert votes_of(words, functions).tolist() == [1.0, 0.0, 0.25, 0.0, 0.5, 0.5, 0.0]
     assert votes_of((), ()).shape == (0,)
+
+
+def test_what_a_vlm_named_counts_for_more_than_its_word() -> None:
+    words, functions = ("stove", "chair", "picture", "picture"), ("kitchen", "balcony", "office", "unknown")
+    assert votes_of(words, functions).tolist() == [1.0, 0.25, 0.0, 0.0]
+    assert votes_of(words, functions, (True,) * 4).tolist() == [1.0, 0.7, 0.7, 0.0]
+    assert votes_of(words, functions, (False, True, False, False)).tolist() == [1.0, 0.7, 0.0, 0.0]
