@@ -141,6 +141,7 @@ def _kept(here: _Here, bases: list[Basis], before: Answered, params: StalenessPa
 
 def _bases(here: _Here) -> list[Basis]:
     functions = np.array(here.grouping.functions, dtype=object)
+    told = here.grouping.told
     bases = []
     for number, floor in enumerate(here.surveyed):
         members = np.flatnonzero(here.storeys == number)
@@ -155,6 +156,7 @@ def _bases(here: _Here) -> list[Basis]:
                 labels=mine.labels,
                 functions=tuple(functions[members]),
                 centres=mine.centres[:, :2],
+                told=tuple(told[i] for i in members.tolist()) if told else (),
             )
         )
     return bases

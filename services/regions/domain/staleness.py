@@ -35,7 +35,8 @@ class Basis:
     """What a floor was cut from: F, and its objects in the order of their ids.
 
     packed: F `(R, C)` by `np.packbits`, `shape` its rows and columns, `origin` world x, y of its first corner,
-    resolution in metres. centres: `(N, 2)` world metres.
+    resolution in metres. centres: `(N, 2)` world metres. told: whether a VLM named each function, which weighs its
+    vote; none where empty.
     """
 
     origin: tuple[float, float]
@@ -46,6 +47,7 @@ class Basis:
     labels: tuple[str, ...]
     functions: tuple[str, ...]
     centres: F64
+    told: tuple[bool, ...] = ()
 
     @property
     def free(self) -> Bools:
@@ -63,6 +65,7 @@ class Basis:
             "labels": self.labels,
             "functions": self.functions,
             "centres": self.centres.tolist(),
+            "told": self.told,
         }
         text = json.dumps(head).encode()
         return zlib.compress(struct.pack("<q", len(text)) + text + self.packed.tobytes(), 1)
@@ -80,18 +83,20 @@ class Basis:
             centres = np.array(head["centres"], np.float64).reshape(-1, 2)
             ids, labels, functions = (tuple(head[name]) for name in ("ids", "labels", "functions"))
             size = (rows, columns)
-            return cls((x, y), head["resolution"], size, packed, ids, labels, functions, centres)
+            told = tuple(bool(one) for one in head["told"])
+            return cls((x, y), head["resolution"], size, packed, ids, labels, functions, centres, told)
         except (zlib.error, struct.error, ValueError, KeyError, TypeError) as error:
             raise Corrupt(f"basis of a floor: {error}") from error
 
 
 def is_stale(before: Basis | None, now: Basis, params: StalenessParams | None = None) -> bool:
-    """Whether a floor that was cut from `before` is to be cut again: an object appeared, went, moved or was
-    given another name or function, or its free space changed. A floor that never was cut is stale."""
+    """Whether a floor that was cut from `before` is to be cut again: an object appeared, went, moved or was given
+    another name or function, or the same function by a VLM; or its free space changed. A floor that never was cut is
+    stale."""
     params = params or StalenessParams()
     if before is None or (before.resolution, before.ids) != (now.resolution, now.ids):
         return True
-    if (before.labels, before.functions) != (now.labels, now.functions):
+    if (before.labels, before.functions, before.told) != (now.labels, now.functions, now.told):
         return True
     if (np.linalg.norm(now.centres - before.centres, axis=1) > params.moved).any():
         return True

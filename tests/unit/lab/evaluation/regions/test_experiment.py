@@ -124,6 +124,18 @@ def test_walls_alone_leave_an_open_plan_whole_and_functions_cut_it(house: FloorP
 
 
 @pytest.mark.recording
+@pytest.mark.xfail(
+    strict=True, reason="HydP .64 against SysNav's .68 where every tenth frame maps but 23 objects"
+)
+def test_on_a_sparse_map_of_an_open_plan_our_hydra_precision_is_the_best_too(house: FloorPlace) -> None:
+    surveyed = survey(house.evidence)
+    ground = Ground.of(house, surveyed)
+    cuts = {name: METHODS[name](house, surveyed) for name in ("KGSW", "HOV-SG", "SysNav")}
+    precision = {name: score_regions(ground, cut, cuts["SysNav"])["HydP"] for name, cut in cuts.items()}
+    assert precision["KGSW"] > max(precision["HOV-SG"], precision["SysNav"])
+
+
+@pytest.mark.recording
 def test_of_every_area_of_the_furnished_house_it_is_said_what_became_of_it(house: FloorPlace) -> None:
     surveyed = survey(house.evidence)
     told = diagnose(Ground.of(house, surveyed), METHODS["KGSW"](house, surveyed))

@@ -31,6 +31,11 @@ OURS = PartitionParams(dilation=9, votes=2.0, growth=Growth.DISTANCE, min_part=4
 MASKS = arrays.arrays(np.bool_, st.tuples(st.integers(0, 24), st.integers(0, 24)))
 
 
+def test_the_defaults_are_the_papers_own_and_nothing_beyond_them() -> None:
+    assert (PARAMS.dilation, PARAMS.marker_radius, PARAMS.eps, PARAMS.resolution) == (6, 0.30, 2.0, 0.05)
+    assert (PARAMS.votes, PARAMS.growth, PARAMS.merge_width) == (0.0, Growth.CLEARANCE, float("inf"))
+
+
 def hall(rows: int = 60, columns: int = 60) -> Bools:
     """One open rectangle of floor, 0.05 m a cell."""
     return np.ones((rows, columns), bool)

@@ -84,6 +84,14 @@ def test_any_object_that_comes_goes_or_is_renamed_makes_its_floor_stale() -> Non
     assert is_stale(SMALL, replace(SMALL, functions=("bedroom", "dining area")))
 
 
+def test_a_function_that_a_vlm_confirms_makes_its_floor_stale_and_is_kept_in_the_bytes() -> None:
+    confirmed = replace(SMALL, told=(True, False))
+    assert is_stale(SMALL, confirmed)
+    kept = Basis.from_bytes(confirmed.to_bytes())
+    assert kept.told == (True, False)
+    assert not is_stale(kept, confirmed)
+
+
 def test_an_object_must_move_over_half_a_metre_in_the_plane() -> None:
     assert not is_stale(SMALL, replace(SMALL, centres=SMALL.centres + np.array([0.3, 0.4])))
     assert is_stale(SMALL, replace(SMALL, centres=SMALL.centres + np.array([0.31, 0.4])))
